@@ -10,7 +10,7 @@ from riser_soil.contact.on_condensed_soil import Touched, add_contact, add_conta
 from riser_soil.contact.soil_contact import SoilContact
 from riser_soil.contact.soil_friction import SoilFriction
 from riser_soil.core.arrays import IntArray
-from riser_soil.core.bound import Bound, Packed
+from riser_soil.core.bound import Bound, Packed, bound
 from riser_soil.core.part import State
 
 SHARE = 0.25  # of the range around the pipe by which soil may move before what may touch is looked for anew
@@ -53,23 +53,22 @@ class CondensedContact:
         """Begin a step from the accepted state, at which the top's points are written."""
         self._renew(self.contact.at_start(self._data))
 
-    def look(self, before: State, tried: bool) -> IntArray:
+    def look(self, tried: bool) -> IntArray:
         """Find what may touch near the accepted place and, where asked for, near the last trial: the top's nodes (k,).
         """
-        places = [self.contact.place(before), *([self.contact.place_in(self._data)] if tried else [])]
+        places = [self.contact.place(self.contact.accepted), *([self.contact.place_in(self._data)] if tried else [])]
         pairs = self.contact.candidates(places, self.deformed)
-        self._renew(self.contact.watch(self._data, places, pairs, self.slack))
+        roomy = self.contact.with_room(self._data)
+        self._renew(self.contact.watch(roomy, places, pairs, self.slack))
         return self.contact.nodes_of(pairs)
 
     def forces(self, top: Packed, at: Packed, forces: Packed, border: Packed) -> list[Bound]:
         """Kernels that add to the residuals of the line and of the border."""
-        kernels = add_contact.kernels
-        return [Bound(kernels[type(part.value)], part, top, at, forces, border) for part in self._packed]
+        return [bound(add_contact, part, top, at, forces, border) for part in self._packed]
 
     def tangent(self, top: Packed, at: Packed, K: Packed, border: Packed) -> list[Bound]:
         """Kernels that add to the tangents."""
-        kernels = add_contact_tangent.kernels
-        return [Bound(kernels[type(part.value)], part, top, at, K, border) for part in self._packed]
+        return [bound(add_contact_tangent, part, top, at, K, border) for part in self._packed]
 
     def end(self, state: State) -> None:
         """Hand to the parts what was found last, at the end of a step."""

@@ -131,18 +131,18 @@ def add_blocks(values: Array, places: IntArray, blocks: Array) -> None:
 
 @dataclass(frozen=True, eq=False)
 class CandidatePairs:
-    """Candidate pairs of a node or an element of the riser and a facet, sorted and without repetition.
+    """Candidate pairs of a node or an element of the line and a facet, sorted and without repetition.
 
-    pairs (mp,): node·facets + facet, where `facets` is the number of facets.
+    pairs (mp,): number on the line · facets + facet, where `facets` is the number of facets.
     """
 
     facets: int
     pairs: IntArray
 
     @classmethod
-    def of(cls, facets: int, node: IntArray, facet: IntArray) -> CandidatePairs:
-        """Candidates from lists (n,) of a node and the facet below it."""
-        return cls(facets, np.unique(node * facets + facet))
+    def of(cls, facets: int, on_line: IntArray, facet: IntArray) -> CandidatePairs:
+        """Candidates from lists (n,) of a node or element and a facet near it."""
+        return cls(facets, np.unique(on_line * facets + facet))
 
     @classmethod
     def none(cls, facets: int) -> CandidatePairs:
@@ -159,16 +159,18 @@ class CandidatePairs:
         return np.zeros(len(self.pairs), dtype=bool)
 
     @property
-    def nodes(self) -> IntArray:
+    def on_line(self) -> IntArray:
+        """Nodes or elements (mp,) of the pairs."""
         return self.pairs // self.facets
 
     @property
     def facet(self) -> IntArray:
+        """Facets (mp,) of the pairs."""
         return self.pairs % self.facets
 
-    def places(self, node: IntArray, facet: IntArray) -> IntArray:
+    def places(self, on_line: IntArray, facet: IntArray) -> IntArray:
         """Position (n,) of pairs in the list, −1 for what is no candidate."""
-        wanted = node * self.facets + facet
+        wanted = on_line * self.facets + facet
         if len(self.pairs) == 0:
             return np.full(len(wanted), -1)
         at = np.minimum(np.searchsorted(self.pairs, wanted), len(self.pairs) - 1)

@@ -25,10 +25,9 @@ from riser_soil.contact.touching_nodes import (
     touching_workspace,
 )
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.identity_cache import IdentityCache
 from riser_soil.core.part import Forces, State, Weights
-from riser_soil.core.saved_state import Saved
 from riser_soil.riser.line import Line
+from riser_soil.riser.moving_nodes import Trial
 from riser_soil.seabed.law import NormalLaw
 
 if TYPE_CHECKING:
@@ -69,8 +68,6 @@ class NodeContact(SoilContact):
     ) -> None:
         super().__init__(line, law, surface)
         self._radius = radius
-        self._below = IdentityCache[State, PointsBelow]()
-        self._touching = IdentityCache[State, TouchingNodes]()
         if not self.active:
             return
         self._reach = reach or _default_reach(line, self._soil)
@@ -80,20 +77,24 @@ class NodeContact(SoilContact):
         self._basis = np.ascontiguousarray(line.basis)
 
     def below(self, state: State) -> PointsBelow:
-        """Where the points stand; kept for the state asked last, whose arrays must not change then."""
-        return self._below.made_of(state, self._find_below)
+        """Where the points stand, found once at a state."""
+        found: PointsBelow = self.line.trial(state).once((self, "below"), self._find_below)
+        return found
 
-    def _find_below(self, state: State) -> PointsBelow:
+    def _find_below(self, trial: Trial) -> PointsBelow:
+        state = trial.state
         surface, found = self._soil.deformed(state), points_below(len(self.points.node))
         level = float(surface[:, 2].max()) + self._reach.above
         find_below(self.place(state), self._radius, self.points, level, self._soil.cover(surface), found)
         return found
 
     def touching(self, state: State) -> TouchingNodes:
-        """What touches; kept for the state asked last, whose arrays must not change then."""
-        return self._touching.made_of(state, self._find_touching)
+        """What touches, found once at a state."""
+        found: TouchingNodes = self.line.trial(state).once((self, "touching"), self._find_touching)
+        return found
 
-    def _find_touching(self, state: State) -> TouchingNodes:
+    def _find_touching(self, trial: Trial) -> TouchingNodes:
+        state = trial.state
         found = touching_workspace(len(self.points.node))
         n, energy = find_touching(self.law.kernel_data, self.points, self.below(state), found)
         return self._touching_nodes(first_touching(found, n), energy, self._soil.deformed(state))
@@ -134,14 +135,6 @@ class NodeContact(SoilContact):
         touching = self.touching(state)
         rows = self.pair_dofs(touching.points.node, touching.points.facet)
         return float(np.sum(touching.gradient * state.u[rows]))
-
-    def commit(self, state: State) -> None:
-        super().commit(state)
-        self._forget()
-
-    def _forget(self) -> None:
-        self._below.forget()
-        self._touching.forget()
 
     def force_per_length(self, state: State) -> Array:
         """Contact force per length at the nodes (nn,) [N/m], ≥ 0."""
@@ -221,7 +214,7 @@ class NodeContact(SoilContact):
         n = data.touched.counts[POINTS]
         points = TouchingPoints._make(each[:n].copy() for each in data.touching)
         found = self._touching_nodes(points, float(data.touched.energy[0]), data.cover.points.copy())
-        self._touching.made_of(state, lambda _: found)
+        self.line.trial(state).once((self, "touching"), lambda _: found)
 
     def stretch(self, state: State) -> float:
         if not self.active:
@@ -233,10 +226,6 @@ class NodeContact(SoilContact):
         least = np.full(self.line.nodes, np.inf)
         np.minimum.at(least, self.points.node, self.below(state).gap - self.law.start)
         return least
-
-    def restore(self, saved: Saved) -> None:
-        super().restore(saved)
-        self._forget()
 
 
 def _default_reach(line: Line, soil: DeformedSurface) -> CandidateRange:

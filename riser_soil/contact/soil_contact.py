@@ -110,6 +110,12 @@ class SoilContact(RiserContact):
         from there until others may touch, while the soil moves by no more than `slack` [m].
         """
 
+    def with_room(self, data: Any) -> Any:
+        """The kernel data with room for more points, where the last trial has found too little; all of them have room
+        by default.
+        """
+        return data
+
     @abstractmethod
     def adopt(self, state: State, data: Any) -> None:
         """Take over what the line solver has found at a state."""
@@ -137,7 +143,7 @@ class SoilContact(RiserContact):
     def blocks(self) -> dict[str, MatrixBlock]:
         """Dofs of a node or element and of a facet, candidate pair by pair."""
         patch = self._present_patch()
-        rows = self.pair_dofs(patch.nodes, patch.facet)
+        rows = self.pair_dofs(patch.on_line, patch.facet)
         return {SOIL: MatrixBlock(rows, rows, patch.filled)}
 
     def rebuild(self, state: State) -> None:
@@ -195,9 +201,13 @@ class SoilContact(RiserContact):
 
     def _present_patch(self) -> CandidatePairs:
         if self._patch is None:
-            ends = self.line.offset + self.line.size, self._soil.end
-            self._patch = self._around(State.at_rest(0.0, max(ends)))
+            self._patch = self._around(self.accepted)
         return self._patch
+
+    @property
+    def accepted(self) -> State:
+        """The accepted state of line and soil: no increments of all dofs up to the last of theirs."""
+        return State.at_rest(0.0, max(self.line.part.stop, self._soil.end))
 
     @property
     def settled(self) -> Array:
@@ -249,7 +259,7 @@ class SoilContact(RiserContact):
         """
         if not self.active:
             return guess.u
-        present = self.clearance(State.at_rest(guess.t, guess.u.size))
+        present = self.clearance(self.accepted)
         heights, guessed = self.line.translation_dofs[:, -1], self.clearance(guess)
         return landing_predictor(guess, heights, present, guessed, self.law.start)
 

@@ -45,6 +45,7 @@ SoilAdhesion = Callable[[IntArray, Array], Array]
 class SoilFriction(LinePart):
     """Part "soil friction": friction at the integration points of a `SurfaceContact`; group E.
 
+    memory: tractions [Pa] and areas [m2] that are kept of points from step to step.
     axial, lateral: coefficients, > 0, along the pipe and around it. stiffness: of the soil's surface along itself
     [N/m3], see `coulomb`. adhesion: without a limit by default. The slide is that of the axis over the soil, and the
     force acts on the axis. Directions are those of the start of the step; the traction is kept in global axes.
@@ -66,7 +67,7 @@ class SoilFriction(LinePart):
         super().__init__(contact.line)
         self.contact = contact
         self._resistance, self._adhesion = Resistance(np.array([axial, lateral]), float(stiffness)), adhesion
-        self._memory = PointMemory(np.zeros(AREA + 1))
+        self.memory = PointMemory(np.zeros(AREA + 1))
         self._slid: Array = np.zeros(self.line.nodes)
 
     def stick(self) -> None:
@@ -87,7 +88,7 @@ class SoilFriction(LinePart):
     def _evaluate(self, found: SurfaceState) -> SlidingPoints:
         pressed, start = found.pressed, self.contact.start()
         out = sliding_workspace(len(pressed.force))
-        out.before[...], out.most[...] = self._memory.at(pressed.points.number), self._most(pressed.points)
+        out.before[...], out.most[...] = self.memory.at(pressed.points.number), self._most(pressed.points)
         touching = pressed.points, len(out.most), pressed.force
         find_tractions(self._resistance, *touching, start, pressed.axis, pressed.surface, out)
         return out
@@ -100,18 +101,18 @@ class SoilFriction(LinePart):
         """For the line solver, on soil that does not yield; contact: its kernel data."""
         assert self._adhesion is None
         room, q = sliding_workspace(len(contact.pressed.force)), np.zeros((self.line.length.size, 4, 3))
-        return SoilFrictionData(contact, self._resistance, self._memory.kept, q, room)
+        return SoilFrictionData(contact, self._resistance, self.memory.kept, q, room)
 
     def at_start(self, data: SoilFrictionData, contact: SurfaceContactData) -> SoilFrictionData:
         """The kernel data for a step that starts at the accepted state, beside those that the contact has now; the very
         same where arrays are but written to.
         """
         data.q[...] = self.contact.start()[0]
-        if data.contact is contact and data.kept is self._memory.kept:
+        if data.contact is contact and data.kept is self.memory.kept:
             return data
         room, wanted = data.points, len(contact.pressed.force)
         points = room if len(room.most) == wanted else sliding_workspace(wanted)
-        return data._replace(contact=contact, kept=self._memory.kept, points=points)
+        return data._replace(contact=contact, kept=self.memory.kept, points=points)
 
     def adopt(self, state: State, data: SoilFrictionData) -> None:
         """Take over what the line solver has found at a state, once contact has."""
@@ -138,11 +139,6 @@ class SoilFriction(LinePart):
         )
         self.contact.add_tangent(values, sliding.found, by_dofs, sliding.points.on_riser)
 
-    @property
-    def memory(self) -> PointMemory:
-        """What is kept of the points: their tractions [Pa] and areas [m2]."""
-        return self._memory
-
     def energy(self, state: State) -> Energy:
         """Stored in what the surface gives elastically along itself."""
         sliding = self.evaluate(state)
@@ -154,7 +150,7 @@ class SoilFriction(LinePart):
 
     def work(self, before: State, after: State) -> Work:
         """Energy dissipated: what friction has taken less the change of the energy stored; never negative."""
-        points, kept = self.evaluate(after).points, self._memory.rows
+        points, kept = self.evaluate(after).points, self.memory.rows
         taken = -float(np.sum(points.on_riser * points.moved))
         stored_before = self._stored(kept[:, :AREA], kept[:, AREA])
         return Work(dissipated=taken - self.energy(after).potential + stored_before)
@@ -164,7 +160,7 @@ class SoilFriction(LinePart):
         sliding = self.evaluate(state)
         points = sliding.found.pressed.points
         self._slid = self._slid + self._nodal_slip(sliding)
-        self._memory.keep(points.number, np.column_stack([sliding.points.traction, points.area]))
+        self.memory.keep(points.number, np.column_stack([sliding.points.traction, points.area]))
 
     def _nodal_slip(self, sliding: SlidingState) -> Array:
         """Plastic slip in the step at the nodes (nn,) [m]: the mean over the points that press, shared by two nodes."""
@@ -196,8 +192,8 @@ class SoilFriction(LinePart):
         return self.contact.soil_per_length(sliding.found.pressed.points, sliding.points.on_riser)
 
     def state(self) -> Saved:
-        return {"slid": self._slid} | gathered({"points": self._memory})
+        return {"slid": self._slid} | gathered({"points": self.memory})
 
     def restore(self, saved: Saved) -> None:
         self._slid = saved["slid"]
-        self._memory.restore(within(saved, "points"))
+        self.memory.restore(within(saved, "points"))

@@ -129,10 +129,9 @@ class SurfaceContact(SoilContact):
         """Where the present step starts; kept until line or soil are accepted elsewhere."""
         known, here = self._start, (self.line.x, self._soil.committed)
         if known is None or known[0] is not here[0] or known[1] is not here[1]:
-            placed, q = self.line.once(LineTrials).then, np.empty((self.line.length.size, 4, 3))
-            placed.move(State.at_rest(0.0, max(self.line.part.stop, self._soil.end)))
-            write_axis(self.line.origin, self._basis, placed.at.q, q)
-            known = self._start = *here, (q, self._soil.settled)
+            placed = self.line.once(LineTrials).then
+            placed.move(self.accepted)
+            known = self._start = *here, (self._in_space(placed.at.q), self._soil.settled)
         return known[2]
 
     def kernel_data(self, deformed: Array, touched: Touched) -> SurfaceContactData:
@@ -174,11 +173,14 @@ class SurfaceContact(SoilContact):
         self, data: SurfaceContactData, places: Sequence[Axis], pairs: CandidatePairs, slack: float
     ) -> SurfaceContactData:
         low, high = self._boxes(places)
-        chosen = by_facet(pairs.nodes, pairs.facet, len(self._soil.facets))
+        chosen = by_facet(pairs.on_line, pairs.facet, len(self._soil.facets))
         level = float(data.surface.deformed[:, 2].max()) + slack
-        if data.touched.counts[FULL]:
-            data = data._replace(pressed=self._room(2 * len(data.pressed.force)))
         return data._replace(watched=Watched(chosen, low + slack, high - slack, level))
+
+    def with_room(self, data: SurfaceContactData) -> SurfaceContactData:
+        if not data.touched.counts[FULL]:
+            return data
+        return data._replace(pressed=self._room(2 * len(data.pressed.force)))
 
     def adopt(self, state: State, data: SurfaceContactData) -> None:
         found = data.touched.counts[POINTS], float(data.touched.energy[0]), data.pressed
@@ -195,9 +197,13 @@ class SurfaceContact(SoilContact):
 
     def axis(self, trial: Trial) -> Axis:
         """The riser's axis at a trial."""
-        q = np.empty((self.line.length.size, 4, 3))
-        write_axis(self.line.origin, self._basis, trial.q, q)
-        return Axis(q, self.line.length, self._radius)
+        return Axis(self._in_space(trial.q), self.line.length, self._radius)
+
+    def _in_space(self, q: Array) -> Array:
+        """What q (ne, 4, d) of the elements is in global axes (ne, 4, 3)."""
+        out = np.empty((len(q), 4, 3))
+        write_axis(self.line.origin, self._basis, q, out)
+        return out
 
     @property
     def radius(self) -> float:
@@ -343,7 +349,7 @@ class SurfaceContact(SoilContact):
         """The soil's surface has other nodes than those (np, 3) before: what is remembered of points, here and by
         others, goes over to those that lie there now.
         """
-        settled, here = self._soil.settled, self.line.trial(State.at_rest(0.0, self._soil.end))
+        settled, here = self._soil.settled, self.line.trial(self.accepted)
         axis = self.axis(here)
         near = np.flatnonzero((gaps_of(axis, before)[0][self._soil.facets] < self.radius).any(axis=1))
         numbers, *places = points_of(self.surface(before), self.surface(settled), near)
@@ -365,7 +371,7 @@ class SurfaceContact(SoilContact):
         x, surface = self.line.to_global(self.line.x + moved), self._soil.deformed(guess)
         radius = larger_beside(self._radius)
         low = np.flatnonzero(x[:, 2] - radius < surface[:, 2].max() + self.law.start)
-        was = self.line.to_global(self.line.x[low]), self._soil.deformed(State.at_rest(guess.t, guess.u.size))
+        was = self.line.to_global(self.line.x[low]), self._soil.settled
         present, guessed = (
             self._over(*place, radius[low]) - self.law.start for place in (was, (x[low], surface))
         )

@@ -122,10 +122,10 @@ class LineSolver(StepResults):
         self.system.clock.add("line solver", since)
         return failure if solution is None else solution
 
-    def leaves(self, before: State) -> bool:
-        """Whether a step from an accepted state that could not be solved may be solved over the parts."""
-        left = [each.leave_to_parts(before) for each in self._couplings]
-        return any(left)
+    def leave_to_parts(self) -> bool:
+        """Get the parts ready to solve a step that could not be solved here; whether they may."""
+        ready = [each.leave_to_parts() for each in self._couplings]
+        return any(ready)
 
     def _iterate(self, trial: StepTrial, limits: StopLimits) -> tuple[str, list[float]]:
         """Why the step is not solved, "" where it is; norms of the residual on the way."""

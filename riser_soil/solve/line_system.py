@@ -34,8 +34,8 @@ class Coupling:
     def begin(self, before: State, step_to: float, guess: Array) -> None:
         """Begin a step from an accepted state to a time [s], with a first guess (size,) of all local increments."""
 
-    def leave_to_parts(self, before: State) -> bool:
-        """Whether a step from an accepted state that can't be solved here may be solved over the parts instead."""
+    def leave_to_parts(self) -> bool:
+        """Get the parts ready to solve a step that can't be solved here; whether they may."""
         return False
 
     def widen(self) -> None:

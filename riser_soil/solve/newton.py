@@ -59,7 +59,7 @@ class Newton:
         found = self.lines.solve(step, self.settings, near)
         if isinstance(found, Solution):
             return found
-        if not self.lines.leaves(step.before):
+        if not self.lines.leave_to_parts():
             raise NotConvergedError(found)
         self.by_parts.renew()
         return self.by_parts.solve(step, near)

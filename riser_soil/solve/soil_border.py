@@ -137,16 +137,23 @@ class SoilBorder(Coupling):
         packed = next(packed for packed in lines if packed.line is touching.contact.line)
         self._system, self._packed, self._touching, self._soil = system, packed, touching, soil
         self._top, self.parts = soil.top, (*touching.parts, soil)
-        self._motion = Packed(self._motion_of(np.zeros((0, 0)), np.empty(0, dtype=np.int64)))
+        self._motion = Packed(self._motion_of(np.empty(0, dtype=np.int64)))
         self._dense, self._border, self._held = dense, dense.of[packed], Packed(_held(0))
         self._seen: Array = np.empty((0, 3))
         self._reached: Reached | None = None  # as it was taken last
         self._prescribed: Reached = soil.top.reached  # as the system has it
 
-    def _motion_of(self, by: Array, nodes: IntArray) -> TopMotion:
-        rows = np.full(self._top.size, HELD, dtype=np.int64)
-        rows[self._top.beside] = BEYOND
-        rows[self._top.reached.dofs] = np.arange(len(self._top.reached.dofs))
+    def _motion_of(self, nodes: IntArray) -> TopMotion:
+        """How nodes (k,) of the top follow the reached dofs, from their present places."""
+        top, reached = self._top, self._top.reached
+        rows = np.full(top.size, HELD, dtype=np.int64)
+        rows[top.beside] = BEYOND
+        rows[reached.dofs] = np.arange(len(reached.dofs))
+        dofs = (3 * nodes[:, None] + np.arange(3)).ravel()
+        by = np.ascontiguousarray(reached.compliance[dofs] @ reached.stiffness)
+        own = np.flatnonzero(rows[dofs] >= 0)
+        by[own] = 0.0
+        by[own, rows[dofs[own]]] = 1.0
         return TopMotion(nodes, by, self._touching.deformed.copy(), rows.reshape(-1, 3))
 
     def forces(self) -> list[Bound]:
@@ -199,9 +206,9 @@ class SoilBorder(Coupling):
             self._system.renew_prescribed()
             self._prescribed = self._top.reached
 
-    def leave_to_parts(self, before: State) -> bool:
+    def leave_to_parts(self) -> bool:
         """Newton's method needs a matrix for what is reached and may touch now."""
-        self._touching.contact.rebuild(State.at_rest(before.t, self._system.numbering.size))
+        self._touching.contact.rebuild(self._touching.contact.accepted)
         return True
 
     def _has_moved(self, accepted: Array) -> bool:
@@ -211,32 +218,16 @@ class SoilBorder(Coupling):
         """Reach and watch what the last trial touched."""
         if self._touching.touched.met.any():
             self._soil.meet(np.flatnonzero(self._touching.touched.met))
-            self._soil.rebuild(self._accepted)
+            self._soil.rebuild(self._touching.contact.accepted)
         self._look(tried=True)
-
-    @property
-    def _accepted(self) -> State:
-        """No increments, of all dofs up to the soil's."""
-        return State.at_rest(0.0, self._top.offset + self._top.size)
 
     def _look(self, tried: bool) -> None:
         """Find what may touch near the accepted place, and near the last trial."""
         if self._reached is not self._top.reached:
             self._take(self._top.reached)
-        nodes = self._touching.look(self._accepted, tried)
-        self._motion.renew(self._motion_of(self._by_border(nodes), nodes))
+        nodes = self._touching.look(tried)
+        self._motion.renew(self._motion_of(nodes))
         self._seen = self._touching.deformed.copy()
-
-    def _by_border(self, nodes: IntArray) -> Array:
-        """How nodes (k,) of the top follow the reached dofs (3 k, nb)."""
-        reached, dofs = self._top.reached, (3 * nodes[:, None] + np.arange(3)).ravel()
-        by = reached.compliance[dofs] @ reached.stiffness
-        row = np.full(self._top.size, -1)
-        row[reached.dofs] = np.arange(len(reached.dofs))
-        own = np.flatnonzero(row[dofs] >= 0)
-        by[own] = 0.0
-        by[own, row[dofs[own]]] = 1.0
-        return np.ascontiguousarray(by)
 
     def _take(self, reached: Reached) -> None:
         """Take other dofs."""

@@ -34,7 +34,7 @@ class Beside:
         square, beside = np.zeros((0, 0)), np.zeros((n, 0))
         self._border = Border(np.zeros(0), np.zeros(0), square, beside, beside, np.zeros(nodes, dtype=np.bool_))
         self.touching.begin()
-        self.touching.look(made.state(), tried=False)
+        self.touching.look(tried=False)
 
     def at(self, state: State) -> LineForces:
         """What is found at a state, the soil as it is."""
@@ -71,7 +71,7 @@ def test_what_comes_over_soil_that_is_not_watched_is_noticed(method: str) -> Non
     assert not case.leaves(0.0, 0.0, 0.5)
     assert not case.leaves(0.0, 0.7, 0.5)
     assert case.leaves(0.0, 0.7, 0.0)
-    case.touching.look(case.made.state(), tried=True)
+    case.touching.look(tried=True)
     assert not case.leaves(0.0, 0.7, 0.0)
     assert not case.leaves(0.0, 0.0, 0.0)
 

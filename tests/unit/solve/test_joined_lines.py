@@ -100,10 +100,10 @@ def last_stage(case: str, newton: str) -> TimedStage:
 
 @pytest.mark.parametrize("case", SCENES)
 def test_steps_are_those_of_snes(case: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(loop: LineSolver, before: State) -> bool:
+    def refuse(loop: LineSolver) -> bool:
         raise AssertionError("a step was left to Newton's method over the parts")
 
-    monkeypatch.setattr(LineSolver, "leaves", refuse)
+    monkeypatch.setattr(LineSolver, "leave_to_parts", refuse)
     compiled, snes = (last_stage(case, newton) for newton in ("compiled", "snes"))
     assert compiled.newton.lines is not None
     assert snes.newton.lines is None

@@ -96,10 +96,10 @@ def assert_same(found: list[dict[str, Array]], wanted: list[dict[str, Array]]) -
 
 
 def forbid(patch: pytest.MonkeyPatch) -> None:
-    def refuse(loop: LineSolver, before: State) -> bool:
+    def refuse(loop: LineSolver) -> bool:
         raise AssertionError("a step was left to Newton's method over the parts")
 
-    patch.setattr(LineSolver, "leaves", refuse)
+    patch.setattr(LineSolver, "leave_to_parts", refuse)
 
 
 @pytest.mark.parametrize("case", MARKED)
@@ -141,13 +141,13 @@ def test_what_is_watched_follows_the_riser(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_soil_that_moves_beyond_what_is_watched_is_left_to_newton(monkeypatch: pytest.MonkeyPatch) -> None:
-    left, usual = list[float](), LineSolver.leaves
+    left, usual = list[LineSolver](), LineSolver.leave_to_parts
 
-    def count(loop: LineSolver, before: State) -> bool:
-        left.append(before.t)
-        return usual(loop, before)
+    def count(loop: LineSolver) -> bool:
+        left.append(loop)
+        return usual(loop)
 
-    monkeypatch.setattr(LineSolver, "leaves", count)
+    monkeypatch.setattr(LineSolver, "leave_to_parts", count)
     monkeypatch.setattr("riser_soil.contact.condensed_contact.SHARE", 1e-4)
     found = taken("in a plane", "compiled")
     assert len(left) > 0
