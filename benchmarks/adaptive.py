@@ -43,9 +43,9 @@ class StepHistory(StatelessObserver):
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         self.t.append(step.t)
         self.dt.append(step.dt)
-        seen = self._instants.record_of([self._instants.look(stepper)]).at(0)
-        self.tension.append(float(seen.effective_tension[-1]))
-        self.touchdown.append(float(seen.touchdown_arc))
+        record = self._instants.record_of([self._instants.look(stepper)]).at(0)
+        self.tension.append(float(record.effective_tension[-1]))
+        self.touchdown.append(float(record.touchdown_arc))
         self.cuts += step.cuts
         self.iterations = stepper.newton.iterations
 
@@ -56,9 +56,9 @@ def step_history(*overrides: str, scene_file: Path = SCENE) -> StepHistory:
     assembly = build(scene, MPI.COMM_SELF)
     before = State.at_rest(0.0, assembly.size)
     for stage in scene.stages:
-        seen = StepHistory(assembly)
-        before = run_stage(assembly, stage, before, seen, Timer.new())
-    return seen
+        history = StepHistory(assembly)
+        before = run_stage(assembly, stage, before, history, Timer.new())
+    return history
 
 
 def swing(time_step: float | str, *overrides: str) -> StepHistory:
@@ -71,14 +71,14 @@ def automatic(tolerance: float, *overrides: str) -> StepHistory:
     return swing("auto", f"stages.1.tolerance={tolerance}", *overrides)
 
 
-def errors(seen: StepHistory, reference: StepHistory) -> tuple[float, float]:
+def errors(history: StepHistory, reference: StepHistory) -> tuple[float, float]:
     """Root mean square in time of the errors in top tension [N] and touchdown arc [m]."""
-    return _rms(seen, reference, "tension"), _rms(seen, reference, "touchdown")
+    return _rms(history, reference, "tension"), _rms(history, reference, "touchdown")
 
 
-def _rms(seen: StepHistory, reference: StepHistory, name: str) -> float:
-    exact: Array = np.interp(seen.t, reference.t, getattr(reference, name))
-    return float(np.sqrt(np.average((np.array(getattr(seen, name)) - exact) ** 2, weights=seen.dt)))
+def _rms(history: StepHistory, reference: StepHistory, name: str) -> float:
+    exact: Array = np.interp(history.t, reference.t, getattr(reference, name))
+    return float(np.sqrt(np.average((np.array(getattr(history, name)) - exact) ** 2, weights=history.dt)))
 
 
 def report() -> None:
@@ -90,7 +90,7 @@ def report() -> None:
         _print(f"auto, tolerance {tolerance:g} m", automatic(tolerance), reference)
 
 
-def _print(name: str, seen: StepHistory, reference: StepHistory) -> None:
-    tension, touchdown = errors(seen, reference)
-    steps = f"{len(seen.t)} steps of {min(seen.dt):.3g} to {max(seen.dt):.3g} s, {seen.cuts} tried again"
-    print(f"  {name:24s} {tension:6.3f} N {1e3 * touchdown:6.2f} mm {seen.iterations:6d} Newton iterations; {steps}")
+def _print(name: str, history: StepHistory, reference: StepHistory) -> None:
+    tension, touchdown = errors(history, reference)
+    steps = f"{len(history.t)} steps of {min(history.dt):.3g} to {max(history.dt):.3g} s, {history.cuts} tried again"
+    print(f"  {name:24s} {tension:6.3f} N {1e3 * touchdown:6.2f} mm {history.iterations:6d} Newton iterations; {steps}")

@@ -46,13 +46,13 @@ def row(unknowns: int, springs: float) -> list[str]:
 
 def laying_seconds(overrides: tuple[str, ...]) -> tuple[float, float]:
     """Processor time of set-up and all stages before the last [s]: with compliance that is kept, and without."""
-    found = []
+    seconds = []
     for switch in ("", "", "off"):  # the first of them keeps it
         os.environ[SWITCH] = switch
         began = time.process_time()
         last_stage(SCENE, overrides, Timer.new()).destroy()
-        found.append(time.process_time() - began)
-    return found[1], found[2]
+        seconds.append(time.process_time() - began)
+    return seconds[1], seconds[2]
 
 
 def on_soil(mesh: tuple[float, float, float], soil: str) -> tuple[str, ...]:
@@ -67,9 +67,9 @@ def step_seconds(overrides: tuple[str, ...], steps: int) -> float:
     stage.walk(2)
     began = time.process_time()
     stage.walk(steps)
-    taken = time.process_time() - began
+    elapsed = time.process_time() - began
     stage.destroy()
-    return taken / steps
+    return elapsed / steps
 
 
 if __name__ == "__main__":

@@ -139,11 +139,11 @@ def full_table(methods: Sequence[Method] = METHODS) -> Iterator[str]:
     yield f"| time scheme | contact | largest gain | left, median | left, most | steps cut | lost, of {runs} |"
     yield "|---|---|---|---|---|---|---|"
     for method in methods:
-        found = over_all(method, product(STIFFNESSES, TIME_STEPS))
-        ended = [f.left for f in found if f.finished] or [np.nan]
-        cuts = sum(f.cuts for f in found) / sum(f.steps for f in found)
-        lost = sum(not f.finished for f in found)
-        yield _row(method, max(f.gain for f in found), float(np.median(ended)), max(ended), cuts, lost)
+        outcomes = over_all(method, product(STIFFNESSES, TIME_STEPS))
+        ended = [f.left for f in outcomes if f.finished] or [np.nan]
+        cuts = sum(f.cuts for f in outcomes) / sum(f.steps for f in outcomes)
+        lost = sum(not f.finished for f in outcomes)
+        yield _row(method, max(f.gain for f in outcomes), float(np.median(ended)), max(ended), cuts, lost)
 
 
 def pair_table(methods: Sequence[Method] = METHODS) -> Iterator[str]:

@@ -34,8 +34,8 @@ def rows(dimension: int) -> Iterator[list[str]]:
     least = None
     for count in COUNTS:
         command = [sys.executable, "-m", "benchmarks.length", str(dimension), str(count)]
-        found = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()
-        seconds, iterations, memory, passing, kept = (float(word) for word in found)
+        output = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()
+        seconds, iterations, memory, passing, kept = (float(word) for word in output)
         least = memory if least is None else least
         yield [
             "in a plane" if dimension == 2 else "in space", f"{count:,}", f"{1e3 * seconds:.2f}",
@@ -52,11 +52,11 @@ def measure(dimension: int, elements: int) -> tuple[float, float, float, float, 
     bending = () if dimension == 2 else ("line_types.flexible.GJ=2.0e4",)
     stage = last_stage(CATENARY, (f"dimension={dimension}", ELEMENTS.format(elements), *sizes, *bending), Timer.new())
     stage.walk(BEFORE)
-    stage.iterations, taken = 0, list[float]()
+    stage.iterations, seconds = 0, list[float]()
     for _ in range(STEPS):
         began = time.process_time()
         stage.walk(1)
-        taken.append(time.process_time() - began)
+        seconds.append(time.process_time() - began)
     most = 1024.0 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     iterations = stage.iterations / STEPS
     tracemalloc.start()
@@ -67,7 +67,7 @@ def measure(dimension: int, elements: int) -> tuple[float, float, float, float, 
     after, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     stage.destroy()
-    return median(taken), iterations, most, float(peak - before), (after - before) / BEFORE
+    return median(seconds), iterations, most, float(peak - before), (after - before) / BEFORE
 
 
 if __name__ == "__main__":

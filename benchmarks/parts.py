@@ -139,8 +139,8 @@ def cost(name: str) -> Cost:
     """Cost of a scene, taken in a process of its own; taken twice, as the first compiles what is not yet there."""
     call = [sys.executable, "-m", "benchmarks.parts", "--scene", name]
     for _ in range(2):
-        reported = subprocess.run(call, check=True, capture_output=True, text=True).stdout
-    return Cost(**json.loads(reported.splitlines()[-1]))
+        output = subprocess.run(call, check=True, capture_output=True, text=True).stdout
+    return Cost(**json.loads(output.splitlines()[-1]))
 
 
 def measured(name: str) -> Cost:
@@ -174,14 +174,14 @@ def measured(name: str) -> Cost:
     )
 
 
-def row(name: str, found: Cost) -> list[str]:
+def row(name: str, costs: Cost) -> list[str]:
     """A scene's row of the table."""
-    per_iteration = {part: 1e6 * seconds / found.iterations for part, seconds in found.seconds.items()}
-    by_part = ", ".join(f"{part} {per_iteration[part]:.0f}" for part in found.parts if part in per_iteration)
+    per_iteration = {part: 1e6 * seconds / costs.iterations for part, seconds in costs.seconds.items()}
+    by_part = ", ".join(f"{part} {per_iteration[part]:.0f}" for part in costs.parts if part in per_iteration)
     shared = sum(per_iteration.get(part, 0.0) for part in SHARED)
     loop = f"{per_iteration[LOOP]:.0f}" if LOOP in per_iteration else "–"
-    figures = [f"{n:,}" for n in (found.modules, found.unknowns, found.nonzeros)]
-    return [name, *figures, f"{found.memory:.0f}", f"{found.start:.1f}", loop, by_part, f"{shared:.0f}"]
+    figures = [f"{n:,}" for n in (costs.modules, costs.unknowns, costs.nonzeros)]
+    return [name, *figures, f"{costs.memory:.0f}", f"{costs.start:.1f}", loop, by_part, f"{shared:.0f}"]
 
 
 HEAD = (

@@ -96,16 +96,16 @@ def _yielded(stage: TimedStage) -> float:
 
 def _factorisation_seconds(matrix: PETSc.Mat, repeats: int = 3) -> float:
     """Least processor time [s] of a numeric factorisation as LDL^T, the symbolic one reused."""
-    pc, taken = PETSc.PC().create(matrix.comm), list[float]()
+    pc, seconds = PETSc.PC().create(matrix.comm), list[float]()
     pc.setOperators(matrix)
     use_mumps(pc, "cholesky", Workspace().controls)
     for _ in range(1 + repeats):
         matrix.assemble()
         began = time.process_time()
         pc.setUp()
-        taken.append(time.process_time() - began)
+        seconds.append(time.process_time() - began)
     pc.destroy()
-    return min(taken[1:])
+    return min(seconds[1:])
 
 
 if __name__ == "__main__":

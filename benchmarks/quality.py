@@ -36,13 +36,13 @@ SUMMARY = (  # page, block and row of a figure; what it is
 def studied(folder: Path) -> str:
     """Words of the study; its plot goes into a file."""
     study(read_scene(ROOT / SCENE), folder)
-    reported = json.loads((folder / "study.json").read_text(encoding="utf-8"))
+    data = json.loads((folder / "study.json").read_text(encoding="utf-8"))
     page = (folder / "study.html").read_text(encoding="utf-8")
-    found = re.search(r'data:image/svg\+xml;base64,([^"]+)"', page)
-    assert found is not None
-    PLOT.write_bytes(base64.b64decode(found[1]))
-    said = "\n".join(f"- {sentence[0].upper()}{sentence[1:]}." for sentence in reported["words"])
-    machine = f"{reported['machine']['cores']} cores ({reported['machine']['processor']}), {reported['date']}"
+    match = re.search(r'data:image/svg\+xml;base64,([^"]+)"', page)
+    assert match is not None
+    PLOT.write_bytes(base64.b64decode(match[1]))
+    said = "\n".join(f"- {sentence[0].upper()}{sentence[1:]}." for sentence in data["words"])
+    machine = f"{data['machine']['cores']} cores ({data['machine']['processor']}), {data['date']}"
     return f"{said}\n\nMade by `riser-soil study {SCENE}` on {machine}, which leaves a table of all key results."
 
 
@@ -50,8 +50,9 @@ def summary() -> str:
     """How often error bars and accuracies asked hold, from their pages."""
     rows = []
     for page, name, label, what in SUMMARY:
-        found = dict(_cells(row) for row in block((DOCS / f"{page}.md").read_text(encoding="utf-8"), name).splitlines())
-        rows.append([f"[{what}]({page}.md)", found[label]])
+        text = block((DOCS / f"{page}.md").read_text(encoding="utf-8"), name)
+        values = dict(_cells(row) for row in text.splitlines())
+        rows.append([f"[{what}]({page}.md)", values[label]])
     return table(["on scenes of known answers", ""], rows)
 
 

@@ -67,7 +67,7 @@ def measure(scene: Path, *overrides: str) -> dict[str, float]:
     told to the results, too ("recorded"); of its Newton steps alone ("bare"). Mean number of iterations; time step [s].
     """
     compiled, snes = (surging(scene, *overrides, f"solver.newton={kind}") for kind in ("compiled", "snes"))
-    taken = defaultdict[str, list[float]](list)
+    seconds = defaultdict[str, list[float]](list)
     opened = functools.partial(Observer.open, compiled.assembly, RunClock(), force=True)
     unwritten = patch.multiple(Recorder, flush=lambda recorder: None, flush_is_due=False)
     with tempfile.TemporaryDirectory() as folder, opened(Path(folder)) as seen, unwritten:
@@ -80,18 +80,18 @@ def measure(scene: Path, *overrides: str) -> dict[str, float]:
         for _ in range(STEPS):
             step = compiled.stepper.next_step(compiled.control)
             with suppress(NotConvergedError):  # a step that is cut
-                taken["bare"].append(1e6 * timed(functools.partial(compiled.newton.solve, step)))
+                seconds["bare"].append(1e6 * timed(functools.partial(compiled.newton.solve, step)))
             compiled.iterations = 0
-            taken["step"].append(1e6 * timed(lambda: compiled.walk(1)))
-            taken["iterations"].append(compiled.iterations)
-            taken["snes"].append(1e6 * timed(lambda: snes.walk(1)))
-            taken["told"].append(1e6 * timed(lambda: compiled.tell(seen)))
-        taken["told"][-1] += 1e6 * timed(seen.flush)
-    found = {name: median(values) for name, values in taken.items()} | {"iterations": mean(taken["iterations"])}
-    found["time step"] = (compiled.stepper.now.t - began) / STEPS
+            seconds["step"].append(1e6 * timed(lambda: compiled.walk(1)))
+            seconds["iterations"].append(compiled.iterations)
+            seconds["snes"].append(1e6 * timed(lambda: snes.walk(1)))
+            seconds["told"].append(1e6 * timed(lambda: compiled.tell(seen)))
+        seconds["told"][-1] += 1e6 * timed(seen.flush)
+    medians = {name: median(values) for name, values in seconds.items()} | {"iterations": mean(seconds["iterations"])}
+    medians["time step"] = (compiled.stepper.now.t - began) / STEPS
     for stage in (compiled, snes):
         stage.destroy()
-    return found | {"recorded": found["step"] + mean(taken["told"])}  # told of many at once
+    return medians | {"recorded": medians["step"] + mean(seconds["told"])}  # told of many at once
 
 
 def surging(scene: Path, *overrides: str) -> TimedStage:

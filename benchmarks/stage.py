@@ -69,9 +69,9 @@ def last_stage(scene_file: Path, overrides: tuple[str, ...], clock: Timer) -> Ti
 
 def typical_seconds(action: Callable[[], object], repeats: int) -> float:
     """Median seconds of an action."""
-    taken = []
+    seconds = []
     for _ in range(repeats):
         began = time.perf_counter()
         action()
-        taken.append(time.perf_counter() - began)
-    return median(taken)
+        seconds.append(time.perf_counter() - began)
+    return median(seconds)

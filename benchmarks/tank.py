@@ -13,10 +13,10 @@ def report() -> None:
     with tempfile.TemporaryDirectory() as folder:
         best, *cheap = (swing(Path(folder) / str(n), *case) for n, case in enumerate((BEST, *CHEAP)))
         for run in (*cheap, best):
-            print(reported(run, best))
+            print(row(run, best))
 
 
-def reported(run: Swing, best: Swing) -> str:
+def row(run: Swing, best: Swing) -> str:
     forces, moment = (100.0 * error(run, best, names) for names in (FORCES, MOMENT))
     return (
         f"tank, {run.elements} elements, {run.time_step:g} s: {UNTIL / run.seconds:.1f} simulated seconds per "

@@ -40,12 +40,12 @@ def measure() -> dict[str, tuple[float, float]]:
     """Medians in us, of the plane and of space."""
     stages = [in_surge(dimension) for dimension in (2, 3)]
     kernels = [actions(stage) for stage in stages]
-    found = {name: in_turn([each[name] for each in kernels], REPEATS) for name in kernels[0]}
-    found["Newton iteration"] = medians([[timed_iteration(stage) for stage in stages] for _ in range(STEPS)])
-    found["step"] = in_turn([functools.partial(stage.walk, 1) for stage in stages], STEPS)
+    seconds = {name: in_turn([each[name] for each in kernels], REPEATS) for name in kernels[0]}
+    seconds["Newton iteration"] = medians([[timed_iteration(stage) for stage in stages] for _ in range(STEPS)])
+    seconds["step"] = in_turn([functools.partial(stage.walk, 1) for stage in stages], STEPS)
     for stage in stages:
         stage.destroy()
-    return found
+    return seconds
 
 
 def in_surge(dimension: int) -> TimedStage:

@@ -64,13 +64,13 @@ def measure(count: int) -> tuple[Cost, Cost]:
     assert summed is not None
     sums = next(flow for flow in summed.flows if isinstance(flow, PlainSums))
     stage.walk(RAMP)
-    found = [taken(stage, series, sums) for _ in range(STEPS)]
+    times = [step_seconds(stage, series, sums) for _ in range(STEPS)]
     stage.destroy()
-    (step, *seconds) = np.median(np.array(found), axis=0)
+    (step, *seconds) = np.median(np.array(times), axis=0)
     return Cost(step, seconds[0]), Cost(step - seconds[0] + seconds[1], seconds[1])
 
 
-def taken(stage: TimedStage, *seas: Sea | PlainSums) -> list[float]:
+def step_seconds(stage: TimedStage, *seas: Sea | PlainSums) -> list[float]:
     """Seconds of a step, and of the water's motion by each of the seas at its trials, whose places differ a little."""
     line, before = stage.assembly.riser.line, stage.iterations
     step = timed(lambda: stage.walk(1))

@@ -31,7 +31,7 @@ def quick_figures(folder: Path) -> Texts:
     """All of them by their names; runs come to folder/results, where they are not there."""
     first, clay = run_in(folder, "first", FIRST), run_in(folder, "clay", clay_scene(folder))
     steel = run_in(folder, "steel_catenary", STEEL, "--error-bars")
-    weight = found(r"^  flexible .* (\S+) +\S+ +\S+$", command(folder, "check", str(FIRST)))[0]
+    weight = matched(r"^  flexible .* (\S+) +\S+ +\S+$", command(folder, "check", str(FIRST)))[0]
     return {**of_first(first, float(weight)), **of_clay(clay), **of_steel(steel), **said_of_steel(folder)}
 
 
@@ -51,8 +51,8 @@ def command(folder: Path, *arguments: str) -> str:
 
 def code(page: Path, begins: str) -> str:
     """The page's code block that begins with these words."""
-    (found,) = re.findall(rf"^```\w+\n({re.escape(begins)}.*?)^```$", page.read_text("utf-8"), re.MULTILINE | re.DOTALL)
-    return str(found)
+    (text,) = re.findall(rf"^```\w+\n({re.escape(begins)}.*?)^```$", page.read_text("utf-8"), re.MULTILINE | re.DOTALL)
+    return str(text)
 
 
 def clay_scene(folder: Path) -> Path:
@@ -138,12 +138,12 @@ def of_steel(run: Run) -> Texts:
 def said_of_steel(folder: Path) -> Texts:
     """What check, fatigue and modes print of it."""
     (folder / "fatigue.yaml").write_text(code(TUTORIAL, "curve:"), encoding="utf-8")
-    checked = found(r"effective tension (\S+) kN; H \+ sum of w h = (.*) kN", command(folder, "check", str(STEEL)))
-    worn = found(
+    checked = matched(r"effective tension (\S+) kN; H \+ sum of w h = (.*) kN", command(folder, "check", str(STEEL)))
+    worn = matched(
         r"largest damage (\S+) a year, life (\S+) years, at arc (\S+) m, (\S+) degrees",
         command(folder, "fatigue", "fatigue.yaml", "--force"),
     )
-    period = found(r"^ +1 +\S+ +(\S+)", command(folder, "modes", str(STEEL), "--force", "--count", "1"))[0]
+    period = matched(r"^ +1 +\S+ +(\S+)", command(folder, "modes", str(STEEL), "--force", "--count", "1"))[0]
     return {
         "steel cable": checked[0],
         "steel by hand": checked[1].replace("*", "·"),
@@ -153,7 +153,7 @@ def said_of_steel(folder: Path) -> Texts:
     }
 
 
-def found(pattern: str, text: str) -> tuple[str, ...]:
+def matched(pattern: str, text: str) -> tuple[str, ...]:
     """The groups of a pattern in a text that has it."""
     match = re.search(pattern, text, re.MULTILINE)
     assert match, f"{pattern} is not in {text}"

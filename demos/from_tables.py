@@ -22,8 +22,8 @@ def row(page: str, name: str, *first: str) -> list[str]:
     """Cells of the only row that begins with these cells, in the block of this name of a page."""
     lines = (line for line in block_of(page, name) if line.startswith("|"))
     rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines]
-    (found,) = [cells for cells in rows if cells[: len(first)] == [*first]]
-    return found
+    (match,) = [cells for cells in rows if cells[: len(first)] == [*first]]
+    return match
 
 
 def numbers(page: str, name: str, *first: str) -> list[float]:
@@ -165,7 +165,7 @@ def of_pipe_segment() -> dict[str, str]:
                      "Merifield et al., smooth")
     )  # fmt: skip
     own, *laws = (numbers(page, "stiffness", name) for name in ("segment", "randolph-quiggin", "aubeny-biscontin"))
-    behind, told = numbers(page, "fits", "closed form, smooth, `soil.law.su`")[:2]
+    behind, fitted = numbers(page, "fits", "closed form, smooth, `soil.law.su`")[:2]
     return {
         "pipe coarse": beside(coarse[2:], smooth[2:]),
         "pipe fine": beside(fine[2:], smooth[2:]),
@@ -173,7 +173,7 @@ def of_pipe_segment() -> dict[str, str]:
         "pipe law 1": f"{100.0 * (laws[0][0] / own[0] - 1.0):.0f}",
         "pipe law 2": f"{100.0 * (laws[1][0] / own[0] - 1.0):.0f}",
         "pipe laws far": " and ".join(f"{100.0 * (law[3] / own[3] - 1.0):.0f}" for law in laws),
-        "pipe su": f"{100.0 * (told / behind - 1.0):.0f}",
+        "pipe su": f"{100.0 * (fitted / behind - 1.0):.0f}",
     }
 
 
@@ -278,8 +278,8 @@ def of_soil_precision() -> dict[str, str]:
     def of(scene: str, method: str, figure: str, column: str = "error") -> dict[int, float]:
         """By the number of cells to a diameter."""
         asked = (scene, method, figure, "relative")
-        found = (row for row in rows if tuple(row[key] for key in ("scene", "method", "figure", "norm")) == asked)
-        return {int(row["cells to a diameter"]): float(row[column]) for row in found}
+        matches = (row for row in rows if tuple(row[key] for key in ("scene", "method", "figure", "norm")) == asked)
+        return {int(row["cells to a diameter"]): float(row[column]) for row in matches}
 
     def seconds(scene: str, method: str) -> dict[int, float]:
         return of(scene, method, "trench depth", "processor s")
@@ -312,15 +312,15 @@ def of_quality() -> dict[str, str]:
     scenes, judged = row("docs/error_bars.md", "error bars out of sample", "scenes, key results judged")[1].split(", ")
     inside = row("docs/error_bars.md", "error bars out of sample", "true error inside its bar")[1].removesuffix("%")
     asked = "\n".join(block_of("docs/asked_accuracy.md", "asked accuracy"))
-    found = re.search(r"of all (\d+) scenes \((\d+) say that they do not reach it\) \| ([\d.]+)%", asked)
-    assert found, asked
+    match = re.search(r"of all (\d+) scenes \((\d+) say that they do not reach it\) \| ([\d.]+)%", asked)
+    assert match, asked
     cases = block_of("docs/quality.md", "stress")[2].split("|")[1]
     return {
         "bars scenes": scenes,
         "bars judged": judged,
         "bars inside": inside,
-        "asked scenes": found[1],
-        "asked not": found[2],
-        "asked reached": f"{int(found[1]) * float(found[3]) / 100.0:.0f}",
+        "asked scenes": match[1],
+        "asked not": match[2],
+        "asked reached": f"{int(match[1]) * float(match[3]) / 100.0:.0f}",
         "stress cases": cases.strip(),
     }

@@ -39,10 +39,10 @@ def block(page: str, name: str) -> str:
 
 def places(page: str) -> dict[str, list[str]]:
     """What stands at each of a page's places, by their names."""
-    found = {name: [block(page, name)] for name in _BLOCK.findall(page)}
+    blocks = {name: [block(page, name)] for name in _BLOCK.findall(page)}
     for _, name, text, _ in _FIGURE.findall(page):
-        found.setdefault(name, []).append(text)
-    return found
+        blocks.setdefault(name, []).append(text)
+    return blocks
 
 
 def plain(page: str) -> str:
@@ -57,7 +57,7 @@ def filled(page: str, texts: Mapping[str, str]) -> str:
         if name not in there or f"<!-- {name} -->" in page:
             begin, end = _place(page, name)
             page = page[:begin] + text + "\n" + page[end:]
-    return _FIGURE.sub(lambda found: found[1] + texts.get(found[2], found[3]) + found[4], page)
+    return _FIGURE.sub(lambda match: match[1] + texts.get(match[2], match[3]) + match[4], page)
 
 
 def all_pages() -> list[Path]:

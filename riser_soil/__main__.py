@@ -43,7 +43,7 @@ def _status() -> int:
     except SystemExit as leave:
         status = int(leave.code or 0)
     end = latest()
-    if end is not None and not end.reported:
+    if end is not None and not end.announced:
         print(end, file=sys.stderr)
         status = end.exit_status
     return status

@@ -26,8 +26,8 @@ def _line_in_short(line: str) -> str:
     return f"{head} ... ({len(line) - len(head) - len(tail)} more characters) ... {tail}"
 
 
-def _first_items(found: re.Match[str]) -> str:
-    items = found[0].split(", ")
+def _first_items(match: re.Match[str]) -> str:
+    items = match[0].split(", ")
     return f"{', '.join(items[:_FEW])}, ... ({len(items)} in all)"
 
 
@@ -90,7 +90,7 @@ class Interruption(KeyboardInterrupt):
     """A signal that asks the program to end; as KeyboardInterrupt passes all that catches errors.
 
     place: where the run was, and what is in its folder; a run that has told this is concluded, and an error after that
-    is one of its own. together: whether all ranks stopped at the same place. reported: whether the user has been told.
+    is one of its own. together: whether all ranks stopped at the same place. announced: whether the user has been told.
     """
 
     nowhere = "before the first stage; nothing was computed"
@@ -98,13 +98,13 @@ class Interruption(KeyboardInterrupt):
     def __init__(self, number: int, together: bool = False) -> None:
         super().__init__(number, together)
         self.number, self.together = number, together
-        self.reported = False
+        self.announced = False
         self.place = self.nowhere
 
     @property
     def concluded(self) -> bool:
         """Whether somebody has seen to it."""
-        return self.reported or self.place != self.nowhere
+        return self.announced or self.place != self.nowhere
 
     @property
     def exit_status(self) -> int:

@@ -69,8 +69,8 @@ class HungScene:
     @property
     def summary(self) -> dict[str, Any]:
         """Block `hang_off` of summary.json, of several lines by name."""
-        found = {each.hung.line: each.summary | {"static_solves": self.solves} for each in self.ends}
-        return found if self.scene.lines else found[""]
+        summaries = {each.hung.line: each.summary | {"static_solves": self.solves} for each in self.ends}
+        return summaries if self.scene.lines else summaries[""]
 
 
 def hung(scene: Scene) -> HungScene | None:

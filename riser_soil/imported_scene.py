@@ -41,13 +41,13 @@ class ImportedScene:
 def text_of(file: Path) -> str:
     """The text of another program's file; SceneError where it can't be read or is no text."""
     try:
-        found = content(file, MOST_BYTES)
+        raw = content(file, MOST_BYTES)
     except OSError as err:
         raise SceneError(f"{file}: can't be read ({err.strerror}); check the file's name") from err
-    if _ORCAFLEX_BINARY in found[:16]:
+    if _ORCAFLEX_BINARY in raw[:16]:
         raise SceneError(f"{file}: is binary data of OrcaFlex; save it there as text data (.yml), and import that")
-    in_pairs = found.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
-    text = found.decode("utf-16" if in_pairs else "utf-8-sig", errors="replace")
+    in_pairs = raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+    text = raw.decode("utf-16" if in_pairs else "utf-8-sig", errors="replace")
     if "\0" in text:
         raise SceneError(f"{file}: is no text, for it has NUL characters; save it as text in UTF-8")
     return text

@@ -320,9 +320,9 @@ def _sunk(assembly: Assembly, before: State, after: State) -> float:
 
 def _on_soil(assembly: Assembly) -> LineAssembly:
     """The line that lies on the soil, in a scene with soil."""
-    found = assembly.line_on_soil
-    assert found is not None
-    return found
+    line = assembly.line_on_soil
+    assert line is not None
+    return line
 
 
 def _pressing(assembly: Assembly, state: State) -> Array:
@@ -340,13 +340,13 @@ def _bring_to_rest(run: StageRun, seek: Callable[[StageRun], RelaxationResult]) 
     stepper = run.stepper
     before = gathered(owners(stepper.system.model))
     try:
-        found = seek(run)
+        settled = seek(run)
     except SolveError:
         restore_all(owners(stepper.system.model), before)
         stepper.newton.renew()
         raise
     stepper.newton.renew()  # the search has chosen patterns of its own
-    run.observer.relaxed(found)
+    run.observer.relaxed(settled)
     stepper.restart()
     stepper.newton.at_equilibrium = True
 

@@ -67,7 +67,7 @@ def own_files() -> set[str]:
     return files | {path.relative_to(ROOT).as_posix() for path in beside}
 
 
-def held(wheel: Path) -> set[str]:
+def files_of(wheel: Path) -> set[str]:
     """Files of the package in a wheel."""
     with zipfile.ZipFile(wheel) as packed:
         return {name for name in packed.namelist() if name.startswith("riser_soil/")}
@@ -75,7 +75,7 @@ def held(wheel: Path) -> set[str]:
 
 def check_modules(wheel: Path) -> None:
     """The wheel has the package's files, and no others but its own records."""
-    if odd := sorted(held(wheel) ^ own_files()):
+    if odd := sorted(files_of(wheel) ^ own_files()):
         sys.exit(f"{wheel}: does not hold the package as it is: {', '.join(odd[:5])} and {max(0, len(odd) - 5)} more")
     with zipfile.ZipFile(wheel) as packed:
         others = [name for name in packed.namelist() if name not in own_files() and ".dist-info/" not in name]
@@ -89,7 +89,7 @@ def check_source(source: Path, wheel: Path) -> None:
         shutil.unpack_archive(source, place)
         (project,) = Path(place).iterdir()
         again, _ = _built(project, Path(place))
-        if odd := held(again) ^ held(wheel):
+        if odd := files_of(again) ^ files_of(wheel):
             sys.exit(f"{source}: makes another wheel: {', '.join(sorted(odd)[:5])}")
 
 

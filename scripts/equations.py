@@ -23,10 +23,10 @@ def on_page_content(html: str, **_: Any) -> str:
     return html
 
 
-def _mathml(display: str, found: re.Match[str]) -> str:
-    return PRIMED.sub(_beside, str(convert(unescape(found[1]).strip(), display=display)))
+def _mathml(display: str, match: re.Match[str]) -> str:
+    return PRIMED.sub(_beside, str(convert(unescape(match[1]).strip(), display=display)))
 
 
-def _beside(found: re.Match[str]) -> str:
+def _beside(match: re.Match[str]) -> str:
     """Primes as large as the font has them: they are raised already, and as an exponent they would be specks."""
-    return f'<mrow>{found[1]}<mo lspace="0em" rspace="0em">{found[2]}</mo></mrow>'
+    return f'<mrow>{match[1]}<mo lspace="0em" rspace="0em">{match[2]}</mo></mrow>'

@@ -12,7 +12,7 @@ from pathlib import Path
 from statistics import median
 
 from benchmarks.asked_accuracy.by_hand import HandSetting
-from benchmarks.asked_accuracy.true_errors import TrueErrors, accuracy_of, run_errors, taken, true_errors
+from benchmarks.asked_accuracy.true_errors import TrueErrors, accuracy_of, run_errors, seconds_of, true_errors
 from benchmarks.error_bars.references import Reference
 from benchmarks.error_bars.scenes import SCENES, Mapping
 from riser_soil.accuracy.target_run import run_to_accuracy
@@ -129,7 +129,7 @@ def _run(mapping: Mapping, folder: Path) -> tuple[str, float]:
         except SolveError as err:
             said = str(err).replace(str(folder), "the folder").partition("\n")[0]
 
-    seconds = taken(to_accuracy)
+    seconds = seconds_of(to_accuracy)
     return said, seconds
 
 

@@ -71,13 +71,13 @@ def write(names: Iterable[str], references: dict[str, Reference]) -> None:
     for name in names:
         known[name] = best(ASKED[name], references[name])
         print(f"by hand, {name}: {known[name]}", flush=True)
-        reported = {each: _reported(known[each]) for each in ASKED if each in known}
-        FILE.write_text(json.dumps(reported, indent=1) + "\n", encoding="utf-8")
+        texts = {each: _reported(known[each]) for each in ASKED if each in known}
+        FILE.write_text(json.dumps(texts, indent=1) + "\n", encoding="utf-8")
 
 
 def read() -> dict[str, HandSetting | None]:
-    reported = json.loads(FILE.read_text(encoding="utf-8"))
-    return {name: HandSetting(**of_scene) if of_scene else None for name, of_scene in reported.items()}
+    data = json.loads(FILE.read_text(encoding="utf-8"))
+    return {name: HandSetting(**of_scene) if of_scene else None for name, of_scene in data.items()}
 
 
 def _reported(setting: HandSetting | None) -> Mapping | None:

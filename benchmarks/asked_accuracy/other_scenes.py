@@ -20,10 +20,10 @@ from benchmarks.error_bars.scenes import (
     cantilever,
     even,
     hanging,
-    held,
     line,
     loaded,
     moved,
+    tensioned,
 )
 
 FILE = Path(__file__).with_name("references.json")
@@ -60,7 +60,7 @@ def _beam(draw: Draw) -> Mapping:
 
 
 def _stretched(draw: Draw) -> Mapping:
-    return held(draw.randint(8, 30), HANG, tension=_spread(draw, 2.0e5, 3.0e6))
+    return tensioned(draw.randint(8, 30), HANG, tension=_spread(draw, 2.0e5, 3.0e6))
 
 
 def _touching(draw: Draw, seabed: Mapping, *stages: Mapping, **more: Any) -> Mapping:

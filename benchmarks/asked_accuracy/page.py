@@ -132,10 +132,10 @@ def _figures(scenes: list[AskedScene]) -> str:
 
 
 def _shares(scenes: list[AskedScene]) -> list[list[str]]:
-    reported = sum(each.outcome is Outcome.REPORTED for each in scenes)
+    unreached = sum(each.outcome is Outcome.REPORTED for each in scenes)
     return [
         ["scenes that truly reach what they ask, of those that claim it", f"{share_of_claims(scenes):.1%}"],
-        [f"of all {len(scenes)} scenes ({reported} say that they do not reach it)", f"{share_of_all(scenes):.1%}"],
+        [f"of all {len(scenes)} scenes ({unreached} say that they do not reach it)", f"{share_of_all(scenes):.1%}"],
         ["largest true error over the accuracy asked, median", f"{median_error(scenes):.2f}"],
     ]
 

@@ -76,12 +76,12 @@ def _row(name: str, each: Reached) -> list[str]:
 
 def reached(name: str) -> Reached:
     """The scene as it asks for the accuracy."""
-    found = asked(name, SCENES[name], references.read(references.ON_SOIL)[name], accuracy=ACCURACY)
-    errors = found.errors
+    result = asked(name, SCENES[name], references.read(references.ON_SOIL)[name], accuracy=ACCURACY)
+    errors = result.errors
     of_errors: dict[str, float | None] = {"error": None, "left_out": 0, "judged": 0}
     if errors is not None:
         of_errors = {"error": errors.largest[0], "left_out": errors.left_out, "judged": len(errors.by_key)}
-    known = {"outcome": found.outcome.value, "setting": found.setting, "seconds": found.seconds, "said": found.said}
+    known = {"outcome": result.outcome.value, "setting": result.setting, "seconds": result.seconds, "said": result.said}
     return known | of_errors
 
 
@@ -92,8 +92,8 @@ def in_time(name: str) -> Reached:
     if done.returncode == -signal.SIGXCPU:
         return {"outcome": UNFINISHED, "seconds": ALLOWED}
     done.check_returncode()
-    found: Reached = json.loads(done.stdout.splitlines()[-1])
-    return found
+    reached: Reached = json.loads(done.stdout.splitlines()[-1])
+    return reached
 
 
 def _limit_processor() -> None:

@@ -53,26 +53,26 @@ def accuracy_of(scene: Mapping[str, Any]) -> float:
 
 def true_errors(folder: Path, reference: Reference, accuracy: float = ACCURACY) -> TrueErrors:
     """Of the run in a folder; inf for a quantity that it lacks."""
-    found = key_results_in(folder)
+    key_results = key_results_in(folder)
     errors, left_out = dict[str, float](), 0
     for key, (true, uncertainty) in reference.items():
-        if key in found and found[key].relative(uncertainty) > CERTAIN * accuracy:
+        if key in key_results and key_results[key].relative(uncertainty) > CERTAIN * accuracy:
             left_out += 1
         else:
-            errors[key] = found[key].relative(found[key].value - true) if key in found else math.inf
+            errors[key] = key_results[key].relative(key_results[key].value - true) if key in key_results else math.inf
     return TrueErrors(errors, left_out, accuracy)
 
 
 def run_errors(scene: Scene, folder: Path, reference: Reference) -> tuple[TrueErrors | None, float]:
     """Of the scene run as users do, and its processor time [s]; None where it fails."""
     try:
-        seconds = taken(lambda: run(scene, folder, force=True))
+        seconds = seconds_of(lambda: run(scene, folder, force=True))
     except (SolveError, ArithmeticError):
         return None, math.inf
     return true_errors(folder, reference), seconds
 
 
-def taken(action: Callable[[], Any]) -> float:
+def seconds_of(action: Callable[[], Any]) -> float:
     """Processor time [s] without compilation of kernels; what the action prints is left out."""
     since = seconds_of_work()
     with contextlib.redirect_stdout(io.StringIO()):

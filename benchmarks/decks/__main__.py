@@ -28,27 +28,27 @@ LONGEST = 160  # characters of a reason
 WITHOUT_TENSION = "its tension is 0 there"
 
 
-def verdict(found: Found) -> str:
+def verdict(deck: Found) -> str:
     """What becomes of it in a few words."""
-    if found.outcome != "scene":
-        return found.outcome
-    if found.difference is None:
+    if deck.outcome != "scene":
+        return deck.outcome
+    if deck.difference is None:
         return "scene, no catenary"
-    if abs(found.difference) <= ALIKE:
+    if abs(deck.difference) <= ALIKE:
         return "scene, as the catenary"
-    if found.bends:
+    if deck.bends:
         return "scene that bends"
-    return "differs, with a warning" if found.warnings else "DIFFERS"
+    return "differs, with a warning" if deck.warnings else "DIFFERS"
 
 
-def summary(found: Sequence[Found]) -> str:
-    counts = Counter(verdict(each) for each in found)
+def summary(decks: Sequence[Found]) -> str:
+    counts = Counter(verdict(each) for each in decks)
     return table(["what becomes of it", "lines and decks"], [[word, str(n)] for word, n in counts.most_common()])
 
 
-def sources(found: Sequence[Found], folder: Path) -> str:
+def sources(known_decks: Sequence[Found], folder: Path) -> str:
     rows = []
-    for repository, group in groupby(found, key=lambda each: each.repository):
+    for repository, group in groupby(known_decks, key=lambda each: each.repository):
         decks = len({each.deck for each in group})
         rows.append([f"github.com/{repository}", _commit(folder / repository.replace("/", "+")), str(decks)])
     return table(["repository", "commit", "files"], rows)
@@ -59,9 +59,9 @@ def _commit(clone: Path) -> str:
     return done.stdout.strip()[:10] or "-"
 
 
-def all_rows(found: Sequence[Found]) -> str:
+def all_rows(decks: Sequence[Found]) -> str:
     rows = []
-    for each in found:
+    for each in decks:
         name = f"{each.repository}: {each.deck}" + (f", `--line {each.line}`" if each.line else "")
         numbers = [_kN(each.tension), _kN(each.reference), _percent(each)]
         rows.append([name, _words(each), str(each.remarks), *numbers])
@@ -103,8 +103,8 @@ def main() -> None:
         work = asked.results.absolute()
         _survey_into(log, survey(asked.folder.absolute(), work, asked.python, asked.without, asked.workers))
     read = [_read(row) for row in log.read_text(encoding="utf-8").splitlines()]
-    found = sorted(read, key=lambda each: (each.repository.lower(), each.deck))
-    blocks = {"sources": sources(found, asked.folder), "outcomes": summary(found), "decks": all_rows(found)}
+    decks = sorted(read, key=lambda each: (each.repository.lower(), each.deck))
+    blocks = {"sources": sources(decks, asked.folder), "outcomes": summary(decks), "decks": all_rows(decks)}
     publish(blocks, asked.results, PAGE if asked.page else None)
 
 

@@ -56,15 +56,15 @@ def tensions(file: str, bodies_free: bool) -> list[dict[str, Any]]:
     if not system.solveEquilibrium(DOFtype="free", tol=TOLERANCE, maxIter=2000, finite_difference=bodies_free):
         raise RuntimeError("it finds no equilibrium")
     _refuse_imbalance(system)
-    found = []
+    values = []
     for line in system.lineList:
         ends = sorted([(line.rA, line.TA), (line.rB, line.TB)], key=lambda end: end[0][2])
-        found.append({
+        values.append({
             "line": str(line.number),
             "ends": [[float(x) for x in place] for place, _ in ends],
             "tensions": [float(tension) for _, tension in ends],
         })  # fmt: skip
-    return found
+    return values
 
 
 def _refuse_imbalance(system: Any) -> None:
@@ -79,14 +79,14 @@ def _refuse_imbalance(system: Any) -> None:
 
 def main(deck: str) -> None:
     """Print what is found of a deck's file."""
-    found: dict[str, Any] = {}
+    results: dict[str, Any] = {}
     for name, bodies_free in (("held", False), ("free", True)):
         try:
             with contextlib.redirect_stdout(io.StringIO()):
-                found[name] = tensions(deck, bodies_free)
+                results[name] = tensions(deck, bodies_free)
         except Exception as trouble:  # whatever it trips over is an answer
-            found[name] = f"{type(trouble).__name__}: {trouble}"
-    print(json.dumps(found))
+            results[name] = f"{type(trouble).__name__}: {trouble}"
+    print(json.dumps(results))
 
 
 if __name__ == "__main__":

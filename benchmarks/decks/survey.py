@@ -97,14 +97,14 @@ def _of_deck(folder: Path, deck: Path, work: Path, python: str) -> list[Found]:
     if deck.suffix.lower() in (".yml", ".yaml"):
         return [_beside(_of_line(deck, name, "", work), {}, work)]
     first, reference = _of_line(deck, name, "", work), _by_moorpy(deck, python)
-    found = [first]
+    decks = [first]
     if first.outcome == "refused" or (_other_lines(work / "first") and FREE.search(deck.read_bytes())):
-        found.append(_of_line(deck, name, "all", work))
-        if found[-1].outcome == "refused":
-            found += _others(deck, name, work)
-    if all(each.outcome == "refused" and each.reason == first.reason for each in found):
-        found = [first]
-    return [_beside(each, reference, work) for each in found]
+        decks.append(_of_line(deck, name, "all", work))
+        if decks[-1].outcome == "refused":
+            decks += _others(deck, name, work)
+    if all(each.outcome == "refused" and each.reason == first.reason for each in decks):
+        decks = [first]
+    return [_beside(each, reference, work) for each in decks]
 
 
 def _other_lines(place: Path) -> list[str]:
@@ -114,14 +114,14 @@ def _other_lines(place: Path) -> list[str]:
 
 def _others(deck: Path, name: tuple[str, str], work: Path) -> Iterator[Found]:
     """Of the lines that neither the first riser has nor one that came before."""
-    left = _other_lines(work / "first")
+    remaining = _other_lines(work / "first")
     for _ in range(MOST_OTHERS):
-        if not left:
+        if not remaining:
             return
-        line = left.pop(0)
+        line = remaining.pop(0)
         yield _of_line(deck, name, line, work)
         others = _other_lines(work / line)
-        left = [each for each in left if each in others] if others else left
+        remaining = [each for each in remaining if each in others] if others else remaining
 
 
 def _of_line(deck: Path, name: tuple[str, str], line: str, work: Path) -> Found:
@@ -178,20 +178,20 @@ def _by_moorpy(deck: Path, python: str) -> dict[str, Any]:
         return {"held": f"MoorPy: {type(trouble).__name__}", "free": f"MoorPy: {type(trouble).__name__}"}
 
 
-def _beside(found: Found, reference: dict[str, Any], work: Path) -> Found:
-    if found.outcome != "scene":
-        return found
-    folder = work / (found.line or "first") / "run" / "out"
+def _beside(deck: Found, reference: dict[str, Any], work: Path) -> Found:
+    if deck.outcome != "scene":
+        return deck
+    folder = work / (deck.line or "first") / "run" / "out"
     final = json.loads((folder / "summary.json").read_text())["stages"][-1]["final"]
-    if found.line == "all":
-        return _whole_beside(found, folder, reference.get("free", "none"))
+    if deck.line == "all":
+        return _whole_beside(deck, folder, reference.get("free", "none"))
     tension, place = final["end"]["effective_tension"], final["end"]["position"]
     lines = reference.get("held", "none")
     if isinstance(lines, str):
-        return Found(**asdict(found) | {"tension": tension, "why_no_reference": lines})
+        return Found(**asdict(deck) | {"tension": tension, "why_no_reference": lines})
     closest = _at_top(lines, place, tension)
     why = "" if closest is not None else f"no line of MoorPy's has its top at {place}"
-    return Found(**asdict(found) | {"tension": tension, "reference": closest, "why_no_reference": why})
+    return Found(**asdict(deck) | {"tension": tension, "reference": closest, "why_no_reference": why})
 
 
 def _at_top(lines: list[dict[str, Any]], place: Sequence[float], tension: float) -> float | None:
@@ -200,16 +200,16 @@ def _at_top(lines: list[dict[str, Any]], place: Sequence[float], tension: float)
     return min(near, key=lambda other: abs(other - tension), default=None)
 
 
-def _whole_beside(found: Found, folder: Path, lines: Any) -> Found:
+def _whole_beside(deck: Found, folder: Path, lines: Any) -> Found:
     """That line whose tension differs most, of those whose tops MoorPy has at the same place."""
     with FORKING:
         runs = Run(folder).of_lines.values()
         ours = [(float(run["effective_tension"][-1, -1]), run["position"][-1, -1]) for run in runs]
     if isinstance(lines, str):
-        return Found(**asdict(found) | {"tension": max(tension for tension, _ in ours), "why_no_reference": lines})
+        return Found(**asdict(deck) | {"tension": max(tension for tension, _ in ours), "why_no_reference": lines})
     pairs = [(tension, other) for tension, place in ours if (other := _at_top(lines, place, tension))]
     if not pairs:
         why = "no line of MoorPy's has its top at the same place"
-        return Found(**asdict(found) | {"tension": max(tension for tension, _ in ours), "why_no_reference": why})
+        return Found(**asdict(deck) | {"tension": max(tension for tension, _ in ours), "why_no_reference": why})
     tension, other = max(pairs, key=lambda pair: abs(pair[0] / pair[1] - 1))
-    return Found(**asdict(found) | {"tension": tension, "reference": other})
+    return Found(**asdict(deck) | {"tension": tension, "reference": other})

@@ -22,16 +22,16 @@ Known = Mapping[str, references.Reference]
 
 def judged(scenes: Mapping[str, SceneMapping], known: Known) -> list[JudgedScene]:
     """Those that can be computed."""
-    found = []
+    results = []
     for name, scene in scenes.items():
         try:
-            found.append(judge(name, scene, known[name]))
+            results.append(judge(name, scene, known[name]))
         except SolveError as err:
             print(f"{name} fails: {str(err).partition(chr(10))[0]}", flush=True)
             continue
-        reported = decided(found[-1].judged)
-        print(f"{name}: {sum(each.inside for each in reported)} of {len(reported)} inside", flush=True)
-    return found
+        bars = decided(results[-1].judged)
+        print(f"{name}: {sum(each.inside for each in bars)} of {len(bars)} inside", flush=True)
+    return results
 
 
 def write_references(asked: Iterable[str], missing: bool = False) -> None:

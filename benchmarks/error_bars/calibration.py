@@ -66,10 +66,10 @@ def judge(name: str, mapping: Mapping, reference: Reference) -> JudgedScene:
     done = seconds_of_work()
     chain = comparison_runs(scene, MPI.COMM_WORLD)
     run = run_values(key_results(peaks.as_summary("sampled")), peaks)
-    found = bars_of(scene, run, chain)
+    bars = bars_of(scene, run, chain)
     seconds = done - began, seconds_of_work() - done
-    judged = [_judged(name, bar, *reference.get(bar.key_result.key, UNKNOWN)) for bar in found if bar.bar is not None]
-    return JudgedScene(name, judged, [bar for bar in found if bar.bar is None], seconds)
+    judged = [_judged(name, bar, *reference.get(bar.key_result.key, UNKNOWN)) for bar in bars if bar.bar is not None]
+    return JudgedScene(name, judged, [bar for bar in bars if bar.bar is None], seconds)
 
 
 def _judged(name: str, bar: ErrorBar, true: float, uncertainty: float) -> Judged:
@@ -81,11 +81,11 @@ def decided(judged: Iterable[Judged]) -> list[Judged]:
 
 
 def share_inside(judged: Iterable[Judged]) -> float:
-    found = [each.inside for each in decided(judged)]
-    return sum(found) / len(found)
+    hits = [each.inside for each in decided(judged)]
+    return sum(hits) / len(hits)
 
 
 def ratios(judged: Iterable[Judged], certain: float = CERTAIN) -> list[float]:
     """Bars over errors that references tell to a share of them, of those above the smallest bar."""
-    found = (each.ratio(certain) for each in judged)
-    return [ratio for ratio in found if ratio is not None]
+    values = (each.ratio(certain) for each in judged)
+    return [ratio for ratio in values if ratio is not None]

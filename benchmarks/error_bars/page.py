@@ -201,14 +201,14 @@ def publish(calibration: list[JudgedScene], out: list[JudgedScene], on_soil: str
 
 def _figures(scenes: list[JudgedScene], where: str, of: Iterable[str]) -> str:
     judged, seconds = _all(scenes), [sum(scene.seconds[n] for scene in scenes) for n in (0, 1)]
-    reported, ratio = decided(judged), ratios(judged)
+    bars, ratio = decided(judged), ratios(judged)
     rows = [
-        ["scenes, key results judged", f"{len(scenes)}, {len(reported)}"],
+        ["scenes, key results judged", f"{len(scenes)}, {len(bars)}"],
         ["true error inside its bar", f"{share_inside(judged):.1%}"],
         [f"bar over true error, median, of the {len(ratio)} errors above {SMALLEST:g}", f"{median(ratio):.2f}"],
         [OF_ALL_ERRORS, f"{median(ratios(judged, math.inf)):.2f}"],
         ["not computed", _failed(scenes, of)],
-        ["excluded, as the reference does not decide", str(len(judged) - len(reported))],
+        ["excluded, as the reference does not decide", str(len(judged) - len(bars))],
         ["bars not given, as a coarser run failed", str(sum(len(scene.not_known) for scene in scenes))],
         ["coarser runs' processor time over the scenes', without start-up",
          f"{seconds[1] / seconds[0]:.0%}"],
@@ -225,10 +225,10 @@ def _with_other_factors(calibration: list[Judged], out: list[Judged]) -> str:
     rows = []
     for factor in FACTORS:
         both = [[_scaled(each, factor) for each in judged] for judged in (calibration, out)]
-        reported = (
+        counts = (
             text for judged in both for text in (f"{share_inside(judged):.1%}", f"{median(ratios(judged)):.2f}")
         )
-        rows.append([f"{factor:g}", *reported])
+        rows.append([f"{factor:g}", *counts])
     return table(["times", "inside, in the calibration", "median", "inside, out of sample", "median"], rows)
 
 
@@ -246,12 +246,12 @@ def _by_kind(out: list[JudgedScene], calibration: list[JudgedScene]) -> str:
 
 
 def _rows_of_kind(out: list[JudgedScene], calibration: list[JudgedScene], kind: Kind) -> list[list[str]]:
-    found: list[dict[str, list[Judged]]] = [{}, {}]
-    for groups, scenes in zip(found, (out, calibration), strict=True):
+    by_kind: list[dict[str, list[Judged]]] = [{}, {}]
+    for groups, scenes in zip(by_kind, (out, calibration), strict=True):
         for each in decided(_all(scenes)):
             groups.setdefault(kind(each), []).append(each)
-    names = sorted(found[0].keys() | found[1].keys())
-    return [[name, *(cell for groups in found for cell in _cells(groups.get(name)))] for name in names]
+    names = sorted(by_kind[0].keys() | by_kind[1].keys())
+    return [[name, *(cell for groups in by_kind for cell in _cells(groups.get(name)))] for name in names]
 
 
 def _cells(own: list[Judged] | None) -> list[str]:
@@ -278,16 +278,16 @@ def _all(scenes: Iterable[JudgedScene]) -> list[Judged]:
 
 
 def _median(judged: list[Judged]) -> str:
-    found = ratios(judged)
-    return f"{median(found):.2g}" if found else "all below the smallest bar"
+    values = ratios(judged)
+    return f"{median(values):.2g}" if values else "all below the smallest bar"
 
 
 def _row(scene: JudgedScene) -> list[str]:
-    reported, (taken, extra) = decided(scene.judged), scene.seconds
-    inside = f"{sum(each.inside for each in reported)} of {len(reported)}"
-    return [scene.name, inside, _median(reported), f"{extra / taken:.0%}"]
+    bars, (run_seconds, extra) = decided(scene.judged), scene.seconds
+    inside = f"{sum(each.inside for each in bars)} of {len(bars)}"
+    return [scene.name, inside, _median(bars), f"{extra / run_seconds:.0%}"]
 
 
 def _missed(scenes: list[JudgedScene]) -> list[list[str]]:
-    found = [each for each in decided(_all(scenes)) if not each.inside]
-    return [[f"{each.scene}: {each.bar.key_result.key}", f"{each.error / (each.bar.bar or 1.0):.2f}"] for each in found]
+    off = [each for each in decided(_all(scenes)) if not each.inside]
+    return [[f"{each.scene}: {each.bar.key_result.key}", f"{each.error / (each.bar.bar or 1.0):.2f}"] for each in off]

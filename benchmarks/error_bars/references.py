@@ -71,8 +71,8 @@ def _text(references: dict[str, Reference]) -> str:
 
 
 def read(file: Path = FILE) -> dict[str, Reference]:
-    reported = json.loads(file.read_text(encoding="utf-8"))
-    return {name: {key: (value, off) for key, (value, off) in of_scene.items()} for name, of_scene in reported.items()}
+    data = json.loads(file.read_text(encoding="utf-8"))
+    return {name: {key: (value, off) for key, (value, off) in of_scene.items()} for name, of_scene in data.items()}
 
 
 def reference(mapping: Mapping) -> Reference:
@@ -80,13 +80,13 @@ def reference(mapping: Mapping) -> Reference:
     scene = scene_from_mapping(mapping)
     if scene.soil is not None:
         return _of_two(scene, DEAR if _is_dear(scene) else SOIL, LEFT_ON_SOIL)
-    statics, found = first_statics(scene), dict[str, tuple[float, float]]()
+    statics, reference_values = first_statics(scene), dict[str, tuple[float, float]]()
     if len(statics) < len(scene.stages):
-        found = _of_two(scene, DYNAMIC)
+        reference_values = _of_two(scene, DYNAMIC)
     if statics:
         rigid = any(setting.name == "penalty" for setting in settings_of(scene))
-        found |= _of_two(scene.model_copy(update={"stages": statics}), RIGID if rigid else STATIC)
-    return found
+        reference_values |= _of_two(scene.model_copy(update={"stages": statics}), RIGID if rigid else STATIC)
+    return reference_values
 
 
 def _of_two(scene: Scene, levels: list[Level], left: float = LEFT) -> Reference:

@@ -110,7 +110,7 @@ def loaded(name: str = "load", **load: Any) -> Mapping:
     return {"name": name, "kind": "static", "loads": [load]}
 
 
-def held(elements: int, *stages: Mapping, tension: float, **more: Any) -> Mapping:
+def tensioned(elements: int, *stages: Mapping, tension: float, **more: Any) -> Mapping:
     """A beam of 30 m along x with clamped ends, drawn to a tension [N], then loaded by its weight."""
     ends = [{"position": [x, 0.0, 0.0], "rotation": "fixed"} for x in (0.0, 30.0 * (1.0 + tension / BEAM["EA"]))]
     return line(BEAM, ends[0], ends[1], even(30.0, elements), list(stages), riser={"initial": "straight"}, **more)
@@ -149,9 +149,9 @@ SCENES: dict[str, Mapping] = {
     "cantilever in space": cantilever(
         6, loaded(at="end", force=[0.0, 2.0e4, -2.0e4]), dimension=3, line_types={"pipe": BEAM | {"GJ": 4.0e5}},
     ),
-    "beam under tension, resolved": held(40, HANG, tension=1.0e5),
-    "beam under tension, coarse": held(10, HANG, tension=1.0e6),
-    "beam under tension, unresolved": held(6, HANG, tension=4.0e6),
+    "beam under tension, resolved": tensioned(40, HANG, tension=1.0e5),
+    "beam under tension, coarse": tensioned(10, HANG, tension=1.0e6),
+    "beam under tension, unresolved": tensioned(6, HANG, tension=4.0e6),
     "on springs, coarse": touching(SPRING, 2.0),
     "on springs": touching(SPRING, 1.0),
     "on springs, fine": touching(SPRING, 0.5),
@@ -175,7 +175,7 @@ SCENES: dict[str, Mapping] = {
     "cantilever under a sudden load": cantilever(
         5, freely(1.5, 100, loads=[{"at": "end", "force": [0.0, 0.0, -2.0e3]}]),
     ),
-    "beam under tension, sudden load": held(
+    "beam under tension, sudden load": tensioned(
         20, HANG, freely(1.5, 150, loads=[{"distributed": [0.0, 0.0, -500.0]}]), tension=1.0e6,
     ),
     "surge, 40 steps": hanging(35, 150.0, moved([2.0, 0.0, 0.0], 14.0, 2.5, 40)),

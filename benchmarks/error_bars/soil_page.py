@@ -55,27 +55,27 @@ def _named(rows: Iterable[tuple[str, ...]]) -> list[list[str]]:
 def _cells(scenes: list[JudgedScene]) -> list[str]:
     judged = [each for scene in scenes for each in scene.judged]
     settled = [each for each in judged if each.bar.key_result.name == SETTLEMENT]
-    taken, extra = (sum(scene.seconds[n] for scene in scenes) for n in (0, 1))
+    run_seconds, extra = (sum(scene.seconds[n] for scene in scenes) for n in (0, 1))
     return [
         f"{len(scenes)}, {len(decided(judged))}",
         *_figures(judged),
         f"{median(ratios(judged, math.inf)):.2f}",
         *_figures(settled),
         str(len(judged) - len(decided(judged))),
-        f"{extra / taken:.0%}",
+        f"{extra / run_seconds:.0%}",
     ]
 
 
 def _figures(judged: list[Judged]) -> tuple[str, str]:
-    found, reported = ratios(judged), decided(judged)
-    inside = f"{share_inside(judged):.1%}, {sum(each.inside for each in reported)} of {len(reported)}"
-    return inside, f"{median(found):.2f}" if found else "none"
+    values, bars = ratios(judged), decided(judged)
+    inside = f"{share_inside(judged):.1%}, {sum(each.inside for each in bars)} of {len(bars)}"
+    return inside, f"{median(values):.2f}" if values else "none"
 
 
 def forecast_factors(known: dict[str, Reference]) -> dict[str, float]:
     """Settlement of laid scenes as `check` foretells it over that of their references."""
-    found = {name: forecast_factor(SOILS[name], known[name]) for name in SOILS if name in known}
-    return {name: factor for name, factor in found.items() if factor is not None}
+    factors = {name: forecast_factor(SOILS[name], known[name]) for name in SOILS if name in known}
+    return {name: factor for name, factor in factors.items() if factor is not None}
 
 
 def forecast_factor(mapping: SceneMapping, reference: Reference) -> float | None:

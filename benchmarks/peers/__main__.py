@@ -78,13 +78,13 @@ def main(results: Path, cases: Sequence[str], page: bool) -> None:
 
 
 def _compared(case: Case, results: Path) -> Compared:
-    found: dict[str, dict[tuple[int, float], Record]] = {}
+    records: dict[str, dict[tuple[int, float], Record]] = {}
     for program in PROGRAMS:
         paths = {size: file_of(results, case.name, program, *size) for size in program.runs(case.name)}
         runs = {size: read(path) for size, path in paths.items() if path.exists()}
         if runs:
-            found[program.name] = runs
-    return Compared(case, found)
+            records[program.name] = runs
+    return Compared(case, records)
 
 
 def finest_page(compared: Compared) -> str:

@@ -108,8 +108,8 @@ def main(results: Path, page: bool) -> None:
     if shutil.which("ccx") is None:
         print("there is no ccx here (Debian's calculix-ccx): CalculiX is left out", file=sys.stderr)
     Run(MESHES["coarse"]).by(OURS, results)  # compiles
-    found = [_found(name, mesh, results) for name, mesh in MESHES.items()]
-    publish({"clay": clay_page(found)}, results, PAGE if page else None)
+    meshes = [_found(name, mesh, results) for name, mesh in MESHES.items()]
+    publish({"clay": clay_page(meshes)}, results, PAGE if page else None)
 
 
 def _found(name: str, mesh: Mesh, results: Path) -> Found:
@@ -125,20 +125,20 @@ def _found(name: str, mesh: Mesh, results: Path) -> Found:
     return Found(name, run.unknowns, by)
 
 
-def clay_page(found: list[Found]) -> str:
+def clay_page(meshes: list[Found]) -> str:
     """Forces by depth of the pipe's middle, how far from riser_soil's on this mesh and on the finest; cost."""
     depth = 0.5e3 * sum(DEPTHS) / STEPS  # mm
     head = ["mesh, unknowns", "program", *(f"N at {step * depth:g} mm" for step in SHOWN)]
-    rows = [_row(each, program, found[-1].by[OURS].force) for each in found for program in each.by]
+    rows = [_row(each, program, meshes[-1].by[OURS].force) for each in meshes for program in each.by]
     return table([*head, "off riser_soil", "off the finest", "Newton iterations", "processor s"], rows)
 
 
-def _row(found: Found, program: str, finest: Array) -> list[str]:
-    pressed = found.by[program]
+def _row(mesh: Found, program: str, finest: Array) -> list[str]:
+    pressed = mesh.by[program]
     shown = ["–" if np.isnan(pressed.force[step - 1]) else f"{pressed.force[step - 1]:.1f}" for step in SHOWN]
-    off = [_percent(pressed.force, other) for other in (found.by[OURS].force, finest)]
+    off = [_percent(pressed.force, other) for other in (mesh.by[OURS].force, finest)]
     cost = [str(pressed.iterations), f"{pressed.seconds:.1f}"]
-    return [f"{found.name}, {found.unknowns}", program, *shown, *off, *cost]
+    return [f"{mesh.name}, {mesh.unknowns}", program, *shown, *off, *cost]
 
 
 def _percent(force: Array, other: Array) -> str:

@@ -53,13 +53,13 @@ class Water:
         self._size = 4 * nodes
 
     def force(self, mbs: Any, t: float, item: int, q: object, v: object) -> np.ndarray:
-        found = np.zeros((self._size // 4, 4))
+        forces = np.zeros((self._size // 4, 4))
         across, speed, _ = self._across(q, v)
-        found[:, :2] = -(self._drag * speed)[:, None] * across
+        forces[:, :2] = -(self._drag * speed)[:, None] * across
         if self._case.floor is not None:
             height = self._reference[:, 1] + np.asarray(q)[1::4]
-            found[:, 1] += self._floor * np.maximum(-height, 0.0)
-        return found.ravel()
+            forces[:, 1] += self._floor * np.maximum(-height, 0.0)
+        return forces.ravel()
 
     def mass(self, mbs: Any, t: float, item: int, q: object, v: object) -> object:
         _, _, normal = self._across(q, v)
@@ -68,10 +68,10 @@ class Water:
     def jacobian(self, mbs: Any, t: float, item: int, q: object, v: object, by_q: float, by_v: float) -> object:
         """Of the forces to the left; what the line's turning changes is left out."""
         _, speed, normal = self._across(q, v)
-        found = by_v * 2.0 * self._drag * speed * _outer(normal, normal)
+        matrix = by_v * 2.0 * self._drag * speed * _outer(normal, normal)
         if self._case.floor is not None:
-            found[3] += by_q * self._floor * (self._reference[:, 1] + np.asarray(q)[1::4] < 0.0)
-        return self._matrix(found)
+            matrix[3] += by_q * self._floor * (self._reference[:, 1] + np.asarray(q)[1::4] < 0.0)
+        return self._matrix(matrix)
 
     def _across(self, q: object, v: object) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Velocity across the line (nn, 2), its magnitude, and the unit normal (nn, 2)."""
@@ -106,8 +106,8 @@ def run(case: Case, elements: int, time_step: float) -> Record:
         began = time.process_time()
         mbs.SolveDynamic(settings)
         seconds = time.process_time() - began
-        found = LoadSolutionFile(file, verbose=False)
-    return _read(case, reference, found, seconds)
+        solution = LoadSolutionFile(file, verbose=False)
+    return _read(case, reference, solution, seconds)
 
 
 def _reference(case: Case, elements: int) -> np.ndarray:
@@ -201,9 +201,9 @@ def _dynamic(settings: Any, case: Case, time_step: float, file: str) -> None:
     file_settings.export.algebraicCoordinates = True
 
 
-def _read(case: Case, reference: np.ndarray, found: dict[str, Any], seconds: float) -> Record:
+def _read(case: Case, reference: np.ndarray, solution: dict[str, Any], seconds: float) -> Record:
     """columnsExported: numbers of displacements and of Lagrange multipliers; the latter are the ends' reactions."""
-    data, nodes = found["data"], len(reference)
+    data, nodes = solution["data"], len(reference)
     coordinates = reference + data[:, 1 : 1 + 4 * nodes].reshape(len(data), nodes, 4)
     reactions = data[:, -4:].reshape(len(data), 2, 2)
     slopes = coordinates[:, [0, -1], 2:]

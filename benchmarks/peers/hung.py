@@ -75,16 +75,16 @@ def by_cabledyn(name: str, parts: int) -> Array:
 
 
 def _save_theirs(program: str, path: Path, *given: object) -> None:
-    told = ", ".join(repr(each) for each in (*given, str(path)))
-    command = [str(THEIRS), "-c", f"from benchmarks.peers.hung_by_{program} import save; save({told})"]
+    arguments = ", ".join(repr(each) for each in (*given, str(path)))
+    command = [str(THEIRS), "-c", f"from benchmarks.peers.hung_by_{program} import save; save({arguments})"]
     subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
 
 
-def off(found: Moved, reference: Moved) -> Array:
+def off(motion: Moved, reference: Moved) -> Array:
     """Largest differences of tensions beside the ends over the line's largest there: at rest, of least and largest ones
     in motion.
     """
-    mine, theirs = (each.tension[..., 1:-1] for each in (found, reference))
+    mine, theirs = (each.tension[..., 1:-1] for each in (motion, reference))
     largest, pairs = theirs.max(axis=(0, 2))[:, None], zip(_looked_at(mine), _looked_at(theirs), strict=True)
     return np.array([np.max(np.abs(a - b) / largest) for a, b in pairs])
 
@@ -98,13 +98,13 @@ def main(results: Path, page: bool) -> None:
     rows = list[list[str]]()
     sizes = list(zip(OURS, PEERS, strict=True))
     for name, ((parts, ours), (_, theirs)) in itertools.product(CASES, sizes):
-        found, reference = by_us(name, parts, ours), by_moordyn(name, parts, theirs)
-        apart = (f"{100.0 * share:.2f}" for share in off(found, reference))
-        seconds = (f"{a:.1f}/{b:.1f}" for a, b in zip(found[-2:], reference[-2:], strict=True))
+        motion, reference = by_us(name, parts, ours), by_moordyn(name, parts, theirs)
+        apart = (f"{100.0 * share:.2f}" for share in off(motion, reference))
+        seconds = (f"{a:.1f}/{b:.1f}" for a, b in zip(motion[-2:], reference[-2:], strict=True))
         beside = "–"
         if CASES[name].bodies:
             cabledyn = by_cabledyn(name, parts)
-            beside = f"{100.0 * np.max(np.abs(np.sort(found.tension[0, :, [0, -1]].T) / cabledyn - 1.0)):.4f}"
+            beside = f"{100.0 * np.max(np.abs(np.sort(motion.tension[0, :, [0, -1]].T) / cabledyn - 1.0)):.4f}"
         rows.append([name, str(2 * parts), f"{ours:g}/{theirs:g}", *apart, beside, *seconds])
     off_moordyn = ["% off MoorDyn at rest", "least", "largest"]
     head = ["", "segments", "steps s", *off_moordyn, "CableDyn at rest", "processor s to rest", "in motion"]

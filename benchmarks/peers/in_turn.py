@@ -53,17 +53,17 @@ def measure(cases: Sequence[str], folder: Path) -> None:
 def _measure_level(
     workers: Mapping[Program, Worker], case: str, level: Mapping[Program, tuple[int, float] | None], folder: Path
 ) -> None:
-    left = {program: size for program, size in level.items() if size is not None}
-    left = {program: size for program, size in left.items() if not file_of(folder, case, program, *size).exists()}
+    todo = {program: size for program, size in level.items() if size is not None}
+    todo = {program: size for program, size in todo.items() if not file_of(folder, case, program, *size).exists()}
     for _ in range(REPEATS):
-        for program, size in list(left.items()):
+        for program, size in list(todo.items()):
             try:
                 seconds = workers[program].run(case, *size, file_of(folder, case, program, *size))
             except RuntimeError as trouble:
                 print(f"{program.name}, {case}, {size[0]} elements, {size[1]:g} s: {trouble}", file=sys.stderr)
                 seconds = LONG
             if seconds >= LONG:
-                del left[program]
+                del todo[program]
 
 
 @contextmanager

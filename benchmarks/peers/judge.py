@@ -34,16 +34,16 @@ class Judged:
 
 def quantities(case: Case, record: Record) -> dict[str, float]:
     """Extremes from `case.since` on, between records and stations; over a floor how far the touchdown point travels."""
-    seen = record.time >= case.since - 1e-9
-    t = record.time[seen]
-    found: dict[str, float] = {}
-    for name, tension in (("top", record.moved[seen]), ("bottom", record.held[seen])):
-        found |= {f"{name} min": -float(peak(t, -tension)), f"{name} max": float(peak(t, tension))}
-    found[MOMENT] = float(peak(t, peak(record.arc, record.moment[seen])))
+    window = record.time >= case.since - 1e-9
+    t = record.time[window]
+    values: dict[str, float] = {}
+    for name, tension in (("top", record.moved[window]), ("bottom", record.held[window])):
+        values |= {f"{name} min": -float(peak(t, -tension)), f"{name} max": float(peak(t, tension))}
+    values[MOMENT] = float(peak(t, peak(record.arc, record.moment[window])))
     if case.floor is not None:
-        arc = lift_off(case, record.position[seen, :, 1])
-        found[RANGE] = float(peak(t, arc) + peak(t, -arc))
-    return found
+        arc = lift_off(case, record.position[window, :, 1])
+        values[RANGE] = float(peak(t, arc) + peak(t, -arc))
+    return values
 
 
 def lift_off(case: Case, height: Array) -> Array:
@@ -67,9 +67,9 @@ def apart(finest: Sequence[Mapping[str, float]]) -> float:
     return max(differences)
 
 
-def errors(found: Mapping[str, float], agreed: Mapping[str, float]) -> dict[str, float]:
+def errors(values: Mapping[str, float], agreed: Mapping[str, float]) -> dict[str, float]:
     """Relative: of tensions to the greatest at that end, of all else to itself."""
-    return {name: abs(found[name] - agreed[name]) / _scale(name, agreed) for name in agreed}
+    return {name: abs(values[name] - agreed[name]) / _scale(name, agreed) for name in agreed}
 
 
 def _scale(name: str, agreed: Mapping[str, float]) -> float:
@@ -89,9 +89,9 @@ def cheapest(runs: Sequence[Judged], target: float) -> Judged | None:
 
 def front(runs: Sequence[Judged]) -> list[tuple[float, float]]:
     """Seconds and kept errors of the runs that no cheaper one beats, from cheap to dear."""
-    found: list[tuple[float, float]] = []
+    points: list[tuple[float, float]] = []
     for run in sorted(runs, key=lambda run: run.seconds):
         kept = kept_error(run, runs)
-        if not found or kept < found[-1][1]:
-            found.append((run.seconds, kept))
-    return found
+        if not points or kept < points[-1][1]:
+            points.append((run.seconds, kept))
+    return points

@@ -85,8 +85,8 @@ def _graded(scene: dict[str, Any], elements: int) -> list[dict[str, Any]]:
     coarse, fine = 1e3, 1e-3  # times the proposed lengths
     for _ in range(HALVINGS):
         middle = math.sqrt(coarse * fine)
-        found = segments_for(checked, arc, middle * lengths)
-        enough = sum(segment.element_count for segment in found) > elements
+        segments = segments_for(checked, arc, middle * lengths)
+        enough = sum(segment.element_count for segment in segments) > elements
         coarse, fine = (coarse, middle) if enough else (middle, fine)
     return [segment.model_dump(mode="json") for segment in segments_for(checked, arc, coarse * lengths)]
 

@@ -36,8 +36,8 @@ def by_us(elements: int, time_step: float, force: float) -> case.Shaken:
 def by_moordyn(elements: int, time_step: float, force: float) -> case.Shaken:
     with TemporaryDirectory() as folder:
         path = Path(folder) / "run.npz"
-        told = f"save({elements}, {time_step!r}, {force!r}, {str(path)!r})"
-        command = [str(THEIRS), "-c", f"from benchmarks.peers.shaken_by_moordyn import save; {told}"]
+        call = f"save({elements}, {time_step!r}, {force!r}, {str(path)!r})"
+        command = [str(THEIRS), "-c", f"from benchmarks.peers.shaken_by_moordyn import save; {call}"]
         subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
         with np.load(path) as stored:
             return case.Shaken(stored["t"], stored["x"], float(stored["seconds"]))
@@ -49,10 +49,10 @@ def main(results: Path, page: bool) -> None:
     programs = {"riser_soil": (by_us, OURS)} | ({"MoorDyn": (by_moordyn, PEERS)} if THEIRS.exists() else {})
     for program, (run, sizes) in programs.items():
         for elements, time_step in sizes:
-            found = run(elements, time_step, case.FORCE)
-            swing, drag = case.swing(found), case.sag(found) / case.sag(run(elements, time_step, 0.0))
-            told = f"{swing.frequency:.3f}", f"{swing.largest:.3f}", f"{swing.mean:.3f}", f"{drag:.3f}"
-            rows.append([f"{program}, {elements} elements, {time_step:g} s", *told, f"{found.seconds:.1f}"])
+            motion = run(elements, time_step, case.FORCE)
+            swing, drag = case.swing(motion), case.sag(motion) / case.sag(run(elements, time_step, 0.0))
+            cells = f"{swing.frequency:.3f}", f"{swing.largest:.3f}", f"{swing.mean:.3f}", f"{drag:.3f}"
+            rows.append([f"{program}, {elements} elements, {time_step:g} s", *cells, f"{motion.seconds:.1f}"])
     head = ["", "Hz", "largest A/D", "A/D, all nodes", "sag over that without vortices", "processor s"]
     publish({"vortices": table(head, rows)}, results, ROOT / "docs" / "peers.md" if page else None)
 

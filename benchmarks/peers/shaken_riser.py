@@ -41,14 +41,14 @@ class Swing(NamedTuple):
     mean: float
 
 
-def sag(found: Shaken) -> float:
+def sag(motion: Shaken) -> float:
     """Largest mean displacement along the flow in the second half [m]: what drag makes of it."""
-    return float(found.x[len(found.t) // 2 :, :, 0].mean(axis=0).max())
+    return float(motion.x[len(motion.t) // 2 :, :, 0].mean(axis=0).max())
 
 
-def swing(found: Shaken) -> Swing:
-    later = slice(len(found.t) // 2, None)
-    t, y = found.t[later], found.x[later, :, 1] - found.x[later, :, 1].mean(axis=0)
+def swing(motion: Shaken) -> Swing:
+    later = slice(len(motion.t) // 2, None)
+    t, y = motion.t[later], motion.x[later, :, 1] - motion.x[later, :, 1].mean(axis=0)
     node = int(y.std(axis=0).argmax())
     (up,) = np.nonzero((y[:-1, node] < 0.0) & (y[1:, node] >= 0.0))
     crossed = t[up] - y[up, node] * (t[up + 1] - t[up]) / (y[up + 1, node] - y[up, node])

@@ -82,11 +82,11 @@ def _draw_panel(axes: Axes, rows: Sequence[Row], panel: Panel) -> None:
 
 def _draw_peers(axes: Axes, peers: str) -> None:
     """From the table of a pipe pressed into clay: how far each program's force is off the finest mesh's."""
-    found: dict[str, list[tuple[float, float]]] = {}
+    curve_points: dict[str, list[tuple[float, float]]] = {}
     for line in block(peers, "clay").splitlines()[2:]:
         cells = [cell.strip() for cell in line.strip("|").split("|")]
-        found.setdefault(cells[1], []).append((float(cells[-1]), 0.01 * float(cells[-3].removesuffix("%"))))
-    for number, (program, points) in enumerate(found.items()):
+        curve_points.setdefault(cells[1], []).append((float(cells[-1]), 0.01 * float(cells[-3].removesuffix("%"))))
+    for number, (program, points) in enumerate(curve_points.items()):
         seconds, errors = zip(*(point for point in points if point[1] > 0.0), strict=True)
         axes.plot(seconds, errors, ".--", color=SHADES[number], linewidth=1.2, label=program)
     axes.legend(fontsize=8, loc="upper right")

@@ -33,8 +33,8 @@ class Row:
     @property
     def cells(self) -> list[str]:
         value = "" if np.isnan(self.value) else f"{self.value:.6g}"
-        told = [self.figure, self.norm, value, f"{self.error:.6f}"]
-        return [self.scene, self.method, str(self.n), f"{self.seconds:.2f}", *told]
+        row = [self.figure, self.norm, value, f"{self.error:.6f}"]
+        return [self.scene, self.method, str(self.n), f"{self.seconds:.2f}", *row]
 
 
 def relative(value: float, reference: float) -> float:
@@ -81,12 +81,12 @@ def uncertainty(rows: Sequence[Row], scene: str, figure: str, norm: str) -> floa
 
 def series(rows: Sequence[Row], scene: str, figure: str, norm: str) -> dict[str, list[Row]]:
     """Methods' rows of one figure, by n; without those that are for the reference alone."""
-    found: dict[str, list[Row]] = {}
+    groups: dict[str, list[Row]] = {}
     methods = LADDERS[scene].methods
     for row in sorted(rows, key=lambda each: each.n):
         if (row.scene, row.figure, row.norm) == (scene, figure, norm) and row.n in methods[row.method][1]:
-            found.setdefault(row.method, []).append(row)
-    return found
+            groups.setdefault(row.method, []).append(row)
+    return groups
 
 
 def cheapest(rows: Sequence[Row], error: float) -> Row | None:

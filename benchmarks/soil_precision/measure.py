@@ -40,12 +40,12 @@ class Measured:
 def measure(results: Path) -> list[Measured]:
     """All runs of all ladders, of which those that are there already are read."""
     results.mkdir(parents=True, exist_ok=True)
-    found = []
+    rows = []
     for scene, ladder in LADDERS.items():
         steps = [(ladder.best, n) for n in ladder.reference]
         steps += [(method, n) for method, (_, sizes) in ladder.methods.items() for n in sizes]
-        found += [_one(scene, method, n, results) for method, n in dict.fromkeys(steps)]
-    return found
+        rows += [_one(scene, method, n, results) for method, n in dict.fromkeys(steps)]
+    return rows
 
 
 def _one(scene: str, method: str, n: int, results: Path) -> Measured:

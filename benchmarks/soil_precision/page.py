@@ -38,7 +38,7 @@ def cheapest_table(rows: Sequence[Row]) -> str:
 
 
 def _line(rows: Sequence[Row], panel: Panel) -> list[str]:
-    known = [row for found in series(rows, *panel[:3]).values() for row in found]
+    known = [row for group in series(rows, *panel[:3]).values() for row in group]
     own = uncertainty(rows, *panel[:3])
     cells = [_cell(cheapest(known, accuracy)) if accuracy > own else "–" for accuracy in ACCURACIES]
     return [panel.figure, f"{100.0 * own:.1f} %", *cells]

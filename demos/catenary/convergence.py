@@ -68,10 +68,10 @@ def main(results: Path, elements: Sequence[int], steps: Sequence[float], page: b
 def statics_page(results: Path, elements: Sequence[int]) -> str:
     """At rest: what is found on each mesh, and observed orders from three meshes that halve."""
     names = ("H2", "theta1", "theta2", "M max")
-    found = {n: at_rest(results, UNIFORM.format(n)) for n in (*elements, 2 * elements[-1])}
+    runs = {n: at_rest(results, UNIFORM.format(n)) for n in (*elements, 2 * elements[-1])}
     rows = []
-    for n, values in found.items():
-        order = [_order(*(found[m][name] for m in (n // 4, n // 2, n))) if n // 4 in found else "" for name in names]
+    for n, values in runs.items():
+        order = [_order(*(runs[m][name] for m in (n // 4, n // 2, n))) if n // 4 in runs else "" for name in names]
         rows.append([str(n), *_shown(values, names), *order])
     graded = at_rest(results, GRADED)
     rows.append(["73, graded", *_shown(graded, names), *[""] * len(names)])
@@ -118,9 +118,9 @@ def orders_page(by_elements: Sequence[Surge], by_steps: Sequence[Surge]) -> str:
     rows = []
     for runs, name in ((by_elements, "elements {}"), (by_steps, "step {} s")):
         for each in zip(runs, runs[1:], runs[2:], strict=False):
-            found = orders(*each)
+            rates = orders(*each)
             sizes = ", ".join(f"{r.elements}" if runs is by_elements else f"{r.time_step:g}" for r in each)
-            rows.append([name.format(sizes), *(f"{value:.1f}" for value in found.values())])
+            rows.append([name.format(sizes), *(f"{value:.1f}" for value in rates.values())])
     return table(["runs", "H1(t)", "V1(t)", "H2(t)", "V2(t)", "M(s, t)", "position(s, t)"], rows)
 
 

@@ -49,8 +49,8 @@ def hanging(folder: Path, elements: int, weight: str) -> Run:
 
 def table1(run: Run) -> dict[str, float]:
     """The published table's quantities at the end of the first stage [kN, deg]."""
-    found, final = reactions(run), run.summary["stages"][0]["final"]
-    forces = {name: 1e-3 * float(getattr(found, name)[0]) for name in COLUMNS[:4]}
+    computed, final = reactions(run), run.summary["stages"][0]["final"]
+    forces = {name: 1e-3 * float(getattr(computed, name)[0]) for name in COLUMNS[:4]}
     return forces | {"theta1": abs(final["start"]["angle_deg"]), "theta2": abs(final["end"]["angle_deg"])}
 
 
@@ -62,9 +62,9 @@ def table1_page(folder: Path) -> str:
         rows.append([row.name, "not given", *(f"{row.values[c]:.2f}" for c in COLUMNS), _unbalance(row.values)])
     for weight in WEIGHTS:
         for elements in (COARSE, FINE):
-            found = table1(hanging(folder, elements, weight))
-            values = [f"{found[c]:.4f}" for c in COLUMNS]
-            rows.append([f"riser_soil, {elements} elements", weight, *values, _unbalance(found)])
+            computed = table1(hanging(folder, elements, weight))
+            values = [f"{computed[c]:.4f}" for c in COLUMNS]
+            rows.append([f"riser_soil, {elements} elements", weight, *values, _unbalance(computed)])
     return table(head, rows)
 
 

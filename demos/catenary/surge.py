@@ -53,12 +53,12 @@ def surge(folder: Path, mesh: str, time_step: float, *overrides: str) -> Surge:
 
 def extremes(run: Run) -> dict[str, float]:
     """Extremes from SINCE on, between records and nodes: reactions [kN] as in Table 1, largest bending moment [N.m]."""
-    seen, found, values = _seen(run), reactions(run), {}
+    window, forces, values = _seen(run), reactions(run), {}
     for name in FORCES:
-        series = 1e-3 * getattr(found, name)[seen]
-        values[f"{name} min"] = -float(peak(run.time[seen], -series))
-        values[f"{name} max"] = float(peak(run.time[seen], series))
-    values["M max"] = float(peak(run.time[seen], peak(run.arc, run["bending_moment"][seen])))
+        series = 1e-3 * getattr(forces, name)[window]
+        values[f"{name} min"] = -float(peak(run.time[window], -series))
+        values[f"{name} max"] = float(peak(run.time[window], series))
+    values["M max"] = float(peak(run.time[window], peak(run.arc, run["bending_moment"][window])))
     return values
 
 
@@ -69,10 +69,10 @@ def error(of: Surge, best: Surge, names: tuple[str, ...]) -> float:
 
 def series(run: Run, arcs: Array) -> dict[str, Array]:
     """Reactions, and moments and positions at the nodes of these arcs, at instants common to all runs."""
-    found = reactions(run)
+    computed = reactions(run)
     instants = np.arange(SINCE, 140.0, COMMON)
     rows, nodes = (np.abs(a[:, None] - b).argmin(axis=0) for a, b in ((run.time, instants), (run.arc, arcs)))
-    forces = {name: getattr(found, name)[rows] for name in FORCES}
+    forces = {name: getattr(computed, name)[rows] for name in FORCES}
     return forces | {"M": run["bending_moment"][rows][:, nodes], "position": run["position"][rows][:, nodes]}
 
 

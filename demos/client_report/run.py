@@ -50,7 +50,8 @@ def main(folder: Path, workers: int, write_page: bool) -> None:
     rows = [(words(results, step), f"{each:.0f}") for step, each in seconds.items()]
     rows.append(("all", f"{sum(seconds.values()):.0f}"))
     times = table(("step", f"seconds, workers: {workers}"), rows)
-    publish({"found": found(results), "seconds": times}, results, folder / "README.md" if write_page else None)
+    texts = {"found": governing_values(results), "seconds": times}
+    publish(texts, results, folder / "README.md" if write_page else None)
     print(f"\nthe report is {results / 'report.html'}, also as .pdf and .docx")
 
 
@@ -94,7 +95,7 @@ def simulated(results: Path, name: str) -> tuple[int, float]:
     return len(names), float(Run(results / name / "cases" / names[-1]).time[-1])
 
 
-def found(results: Path) -> str:
+def governing_values(results: Path) -> str:
     """What governs, as a table, after the time that its runs simulate."""
     extremes = {row["quantity"]: row for row in _rows(results / "storms" / "extremes.csv")}
     rows = []

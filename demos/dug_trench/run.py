@@ -57,8 +57,8 @@ class Storms:
 
     def per_hour(self, storm: int) -> Array:
         """Greatest damage around each section in an hour of the storm."""
-        found = self.damage.cases[storm]
-        return found.per_year.max(axis=1) / (found.case.share * YEAR / HOUR)
+        case = self.damage.cases[storm]
+        return case.per_year.max(axis=1) / (case.case.share * YEAR / HOUR)
 
     def largest(self, storm: int) -> float:
         """Damage in an hour of a storm [1e-6]."""
@@ -71,8 +71,8 @@ class Storms:
     def gains(self) -> tuple[float, float]:
         """Least and greatest of the same at one section, where the first does more than a tenth of its largest."""
         first, second = self.per_hour(0), self.per_hour(1)
-        found = (second / first)[first > 0.1 * first.max()]
-        return float(found.min()), float(found.max())
+        gains = (second / first)[first > 0.1 * first.max()]
+        return float(gains.min()), float(gains.max())
 
     def trench(self, name: str) -> Array:
         """Settlement under the riser at the end of a run [m]."""

@@ -31,24 +31,24 @@ Found = dict[str, tuple[Run, float]]
 
 
 def main(folder: Path, page: bool) -> None:
-    found = runs(folder)
-    publish({"grounds": figures(found)}, folder, PAGE if page else None)
+    results = runs(folder)
+    publish({"grounds": figures(results)}, folder, PAGE if page else None)
     if page:
-        fill_pages(told_of(found))
+        fill_pages(told_of(results))
 
 
 def runs(folder: Path) -> Found:
     """The runs by their grounds, and the processor time [s] of each."""
-    found = dict[str, tuple[Run, float]]()
+    results = dict[str, tuple[Run, float]]()
     for ground, overrides in GROUNDS.items():
         compute(SCENE, folder / "short", *overrides, SHORT)
-        found[ground] = timed(SCENE, folder / ground, *overrides)
-    return found
+        results[ground] = timed(SCENE, folder / ground, *overrides)
+    return results
 
 
-def figures(found: Found) -> str:
+def figures(results: Found) -> str:
     """A row a ground: how deep the pipe lies at most, largest moment and touchdown point as laid and in motion."""
-    rows = [row(ground, run, seconds) for ground, (run, seconds) in found.items()]
+    rows = [row(ground, run, seconds) for ground, (run, seconds) in results.items()]
     head = "ground", "sinks in, laid [mm]", "in motion", "largest moment, laid [kN m]", "in motion"
     return table([*head, "touchdown arc, laid [m]", "in motion", "one core [s]"], rows)
 
@@ -70,9 +70,9 @@ def row(ground: str, run: Run, seconds: float) -> list[str]:
     ]
 
 
-def told_of(found: Found) -> Texts:
+def told_of(results: Found) -> Texts:
     """Figures that pages tell: what sections differ by from the block, and the seconds of both."""
-    (sections, cheap), (block, dear) = found["sections"], found["block"]
+    (sections, cheap), (block, dear) = results["sections"], results["block"]
     (laid, moved), (its_laid, its_moved) = (run.summary["stages"] for run in (sections, block))
     settled, largest = "max_settlement", "max_bending_moment"
     return {

@@ -28,19 +28,19 @@ def clay(run: Run) -> str:
     """Values at rest and extremes in heave of the line on clay and of the arch, with their error bars."""
     bars: Bars = {(each["stage"], each["of"], each["name"]): each for each in run.summary["error_bars"]["quantities"]}
 
-    def told(stage: str, of: str, name: str, scale: float = 1.0, digits: int = 2) -> str:
+    def value(stage: str, of: str, name: str, scale: float = 1.0, digits: int = 2) -> str:
         each = bars[stage, of, name]
         return f"{scale * each['value']:.{digits}f} ± {scale * each['bar']:.{digits}f}"
 
-    arcs = (told("heave", "lower", f"{which} touchdown arc") for which in ("least", "largest"))
-    heights = (told("heave", "arch", f"{which} z", digits=3) for which in ("least", "largest"))
+    arcs = (value("heave", "lower", f"{which} touchdown arc") for which in ("least", "largest"))
+    heights = (value("heave", "arch", f"{which} z", digits=3) for which in ("least", "largest"))
     moment, settled, force = "largest bending moment", "soil settlement", "largest contact force"
     rows = [
-        ["touchdown, arc length [m]", told("rest", "lower", "touchdown arc"), " to ".join(arcs)],
-        ["largest moment of `lower` [N.m]", *(told(stage, "lower", moment, 1.0, 1) for stage in ("rest", "heave"))],
-        ["settlement of the clay [mm]", *(told(stage, "lower", settled, 1e3, 1) for stage in ("rest", "heave"))],
-        ["force on the ground [kN]", *(told(stage, "lower", force, 1e-3) for stage in ("rest", "heave"))],
-        ["arch, z [m]", told("rest", "arch", "z", digits=3), " to ".join(heights)],
+        ["touchdown, arc length [m]", value("rest", "lower", "touchdown arc"), " to ".join(arcs)],
+        ["largest moment of `lower` [N.m]", *(value(stage, "lower", moment, 1.0, 1) for stage in ("rest", "heave"))],
+        ["settlement of the clay [mm]", *(value(stage, "lower", settled, 1e3, 1) for stage in ("rest", "heave"))],
+        ["force on the ground [kN]", *(value(stage, "lower", force, 1e-3) for stage in ("rest", "heave"))],
+        ["arch, z [m]", value("rest", "arch", "z", digits=3), " to ".join(heights)],
     ]
     return table(["", "at rest", "two cycles of heave"], rows)
 

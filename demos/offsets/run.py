@@ -41,9 +41,9 @@ def main(results: Path, write_page: bool) -> None:
     hung, _ = in_numbers(scene)
     rows = []
     for name, offset in OFFSETS.items():
-        found = computed(read_scene(SCENE, [f"vessel.offset.0={offset}"]), results / name)
+        result = computed(read_scene(SCENE, [f"vessel.offset.0={offset}"]), results / name)
         moved = computed(by_move(hung, offset), results / f"{name}_by_move")
-        rows.append(_row(name, found, moved, cable, cable.at_layback(mean + offset)))
+        rows.append(_row(name, result, moved, cable, cable.at_layback(mean + offset)))
     blocks = {"offsets": table(HEAD, rows)}
     publish(blocks, results)
     if write_page:
@@ -71,15 +71,15 @@ def by_move(hung: Scene, offset: float) -> Scene:
     return scene_from_mapping(data | {"stages": [rest, tow, waves]})
 
 
-def _row(name: str, found: Found, moved: Found, cable: LaidCable, H: float) -> list[str]:
+def _row(name: str, result: Found, moved: Found, cable: LaidCable, H: float) -> list[str]:
     return [
         f"{name}, {OFFSETS[name]:+.0f} m",
-        f"{1e-3 * found.tension:.1f}",
+        f"{1e-3 * result.tension:.1f}",
         f"{1e-3 * cable.top_tension(H):.1f}",
-        f"{found.touchdown:.1f}",
+        f"{result.touchdown:.1f}",
         f"{cable.touchdown(H):.1f}",
-        *(f"{1e-3 * moment:.2f}" for moment in (found.moment, cable.moment(H), moved.moment)),
-        *(f"{1e-3 * moment:.2f}" for moment in (found.in_waves, moved.in_waves)),
+        *(f"{1e-3 * moment:.2f}" for moment in (result.moment, cable.moment(H), moved.moment)),
+        *(f"{1e-3 * moment:.2f}" for moment in (result.in_waves, moved.in_waves)),
     ]
 
 

@@ -56,7 +56,7 @@ class CamClay:
 
         Unknowns: x the loss, y the multiplier over `stiff`, with x = y (2p - 1) and the yield surface met.
         """
-        found, slopes = np.zeros((len(p), 2)), np.zeros((len(p), 2, 2))
+        values, slopes = np.zeros((len(p), 2)), np.zeros((len(p), 2, 2))
         trial = p * np.exp(self.elastic * squeezed)
         at = np.flatnonzero((q / self.M) ** 2 + trial * (trial - 1.0) > 1e-12)
         p, q, stiff, squeezed, J = p[at], q[at], stiff[at], squeezed[at], np.empty((len(at), 2, 2))
@@ -78,9 +78,9 @@ class CamClay:
         by = np.zeros_like(J)  # what moves the two equations by `squeezed` and q, turned about
         by[:, 0, 0], by[:, 1, 0] = 2.0 * y * self.elastic * now, -self.elastic * now * steep
         by[:, 1, 1] = -2.0 * q / (self.M * (1.0 + stiff * y)) ** 2
-        found[at], slopes[at] = np.column_stack((x, stiff * y)), np.linalg.solve(J, by)
+        values[at], slopes[at] = np.column_stack((x, stiff * y)), np.linalg.solve(J, by)
         slopes[at, 1] *= stiff[:, None]
-        return found[:, 0], found[:, 1], slopes
+        return values[:, 0], values[:, 1], slopes
 
     def energy(self, stress: Array, p: Array, pore: Array) -> tuple[Array, Array]:
         """Stored (n,) and elastic strain (n, 6) since the start."""

@@ -79,17 +79,17 @@ def capacity_page(curves: dict[str, tuple[Array, Array]]) -> str:
 def stiffness_page(w: Array, V: Array) -> str:
     """Secant stiffness of uplift by its amplitude."""
     of_laws = {name: secant_stiffnesses(w, of_law(law, w)) for name, law in LAWS.items()}
-    found = {"segment": secant_stiffnesses(w, V)} | of_laws
-    rows = ([name, *(f"{k:.0f}" for k in stiffnesses)] for name, stiffnesses in found.items())
+    values = {"segment": secant_stiffnesses(w, V)} | of_laws
+    rows = ([name, *(f"{k:.0f}" for k in stiffnesses)] for name, stiffnesses in values.items())
     return table(["uplift over D", *(f"{a:g}" for a in AMPLITUDES)], rows)
 
 
 def memory_page(loads: dict[str, Array]) -> str:
     """V/(su D) at D/10 before cycles, after the first and after all: of the segment's clays and of seabed laws."""
     w = cyclic_path().w
-    found = {f"segment, {clay}": V for clay, V in loads.items()}
-    found |= {name: at_the_pause(w, of_law(law, w)) for name, law in LAWS.items()}
-    rows = ([name, *(f"{V[n]:.2f}" for n in (0, 1, CYCLES))] for name, V in found.items())
+    curves = {f"segment, {clay}": V for clay, V in loads.items()}
+    curves |= {name: at_the_pause(w, of_law(law, w)) for name, law in LAWS.items()}
+    rows = ([name, *(f"{V[n]:.2f}" for n in (0, 1, CYCLES))] for name, V in curves.items())
     return table(["V/(su D) at D/10", "first", "after a cycle", f"after {CYCLES}"], rows)
 
 
@@ -122,11 +122,11 @@ def fits_page(fits: dict[str, Fit]) -> str:
     """What was found, and what had made the curves."""
     truths = {"the model's own": TRUTH, "closed form, smooth": {"soil.law.su": CLOSED_FORM_SU}}
     rows = []
-    for curve, found in fits.items():
-        for each in found.parameters:
+    for curve, fit in fits.items():
+        for each in fit.parameters:
             low, high = each.interval
             name = each.parameter.name
-            numbers = [f"{truths[curve][name]:.0f}", f"{each.value:.0f}", f"{low:.0f} to {high:.0f}", str(found.runs)]
+            numbers = [f"{truths[curve][name]:.0f}", f"{each.value:.0f}", f"{low:.0f} to {high:.0f}", str(fit.runs)]
             rows.append([f"{curve}, `{name}`", *numbers])
     return table(["curve, number", "behind it", "found", "95 % within", "runs"], rows)
 

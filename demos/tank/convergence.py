@@ -65,8 +65,8 @@ def swings_page(runs: Sequence[Swing], best: Swing) -> str:
 
 def swing_row(run: Swing, best: Swing) -> list[str]:
     values = [f"{run.extremes[name]:.{4 if name in TOUCHDOWN else 2}f}" for name in EXTREMES]
-    reported = run.stage
-    hardship = [f"{reported['iterations']:.2f}", f"{reported['cuts']:.0f}", f"{reported['energy']:.0e}"]
+    stage = run.stage
+    hardship = [f"{stage['iterations']:.2f}", f"{stage['cuts']:.0f}", f"{stage['energy']:.0e}"]
     errors = ["reference"] * 3
     if run is not best:
         forces, moment, touchdown = (error(run, best, names) for names in (FORCES, MOMENT, TOUCHDOWN))

@@ -48,9 +48,9 @@ def _row(name: str, run: Run) -> list[str]:
     rest, moved = run.summary["stages"]
     depth = -1e3 * float(run["position"][0, run.arc.size // 4, 2])
     deepest = -1e3 * float(run["position"][..., 2].min())
-    left = moved["energy"]["dissipated_by"]["seabed"]
+    lost = moved["energy"]["dissipated_by"]["seabed"]
     values = [f"{value:.2f}" for value in extremes(run).values()]
-    return [name, f"{rest['final']['touchdown_arc']:.2f}", f"{depth:.2f}", *values, f"{deepest:.2f}", f"{left:.2f}"]
+    return [name, f"{rest['final']['touchdown_arc']:.2f}", f"{depth:.2f}", *values, f"{deepest:.2f}", f"{lost:.2f}"]
 
 
 def _unit(name: str) -> str:

@@ -39,8 +39,8 @@ class Rest:
 
     def errors(self, exact: Rest) -> Array:
         """Relative ones, that of the touchdown arc in metres."""
-        found, expected = np.array(astuple(self)), np.array(astuple(exact))
-        return np.asarray((found - expected) / np.array([exact.H, exact.top_tension, 1.0, exact.moment]))
+        values, expected = np.array(astuple(self)), np.array(astuple(exact))
+        return np.asarray((values - expected) / np.array([exact.H, exact.top_tension, 1.0, exact.moment]))
 
 
 def reference() -> tuple[dict[float, Rest], dict[float, Rest]]:
@@ -129,8 +129,8 @@ def _signed(errors: Array) -> list[str]:
     return [f"{value:+.1e}" for value in errors]
 
 
-def _orders(found: Array) -> list[str]:
-    return [f"{order:.1f}" if np.isfinite(order) else "–" for order in found]
+def _orders(orders: Array) -> list[str]:
+    return [f"{order:.1f}" if np.isfinite(order) else "–" for order in orders]
 
 
 def at_rest_blocks(results: Path) -> dict[str, str]:

@@ -38,11 +38,11 @@ class Swing:
     @property
     def stage(self) -> dict[str, float]:
         """Newton iterations a step, step cuts, largest energy residual over the energy exchanged; of the motion."""
-        reported = self.run.summary["stages"][-1]
-        residual = abs(reported["energy"]["worst_residual"]["value"]) / reported["energy"]["turned_over"]
+        stage = self.run.summary["stages"][-1]
+        residual = abs(stage["energy"]["worst_residual"]["value"]) / stage["energy"]["turned_over"]
         return {
-            "iterations": reported["newton_iterations"] / reported["steps"],
-            "cuts": reported["step_cuts"],
+            "iterations": stage["newton_iterations"] / stage["steps"],
+            "cuts": stage["step_cuts"],
             "energy": residual,
         }
 
@@ -69,13 +69,13 @@ def extremes(run: Run) -> dict[str, float]:
     """Extremes from SINCE on, between records and nodes: tension at top and bottom [N], bending moment [N.m], touchdown
     arc [m].
     """
-    seen = run.time >= SINCE - 1e-9
-    t, tension = run.time[seen], run["effective_tension"][seen]
-    found: dict[str, float] = {}
-    for name, q in (("top", tension[:, -1]), ("bottom", tension[:, 0]), ("touchdown", run["touchdown_arc"][seen])):
-        found |= {f"{name} min": -float(peak(t, -q)), f"{name} max": float(peak(t, q))}
-    found["M max"] = float(peak(t, peak(run.arc, run["bending_moment"][seen])))
-    return {name: found[name] for name in EXTREMES}
+    window = run.time >= SINCE - 1e-9
+    t, tension = run.time[window], run["effective_tension"][window]
+    values: dict[str, float] = {}
+    for name, q in (("top", tension[:, -1]), ("bottom", tension[:, 0]), ("touchdown", run["touchdown_arc"][window])):
+        values |= {f"{name} min": -float(peak(t, -q)), f"{name} max": float(peak(t, q))}
+    values["M max"] = float(peak(t, peak(run.arc, run["bending_moment"][window])))
+    return {name: values[name] for name in EXTREMES}
 
 
 def error(of: Swing, best: Swing, names: tuple[str, ...]) -> float:

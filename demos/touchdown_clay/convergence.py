@@ -20,8 +20,8 @@ from riser_soil.scene.soil import CellSizes, GeneratedMesh
 
 def main(folder: Path, page: bool) -> None:
     ways = halved()
-    found = {name: run_in(folder / "halved" / f"{n}", *ways[name]) for n, name in enumerate(ways)}
-    publish({"halved": changes(found)}, folder, PAGE if page else None)
+    runs = {name: run_in(folder / "halved" / f"{n}", *ways[name]) for n, name in enumerate(ways)}
+    publish({"halved": changes(runs)}, folder, PAGE if page else None)
 
 
 def run_in(folder: Path, *overrides: str) -> Run:
@@ -52,9 +52,9 @@ def as_override(mesh: GeneratedMesh) -> str:
     return f"soil.mesh={mesh.model_dump_json()}"
 
 
-def changes(found: dict[str, Run]) -> str:
+def changes(runs: dict[str, Run]) -> str:
     """A row a figure: its value, and what each refinement changes of it."""
-    values = {name: figures(run) for name, run in found.items()}
+    values = {name: figures(run) for name, run in runs.items()}
     first, *others = values
     rows = (
         [key, f"{value:.2f}", *(f"{100.0 * (values[name][key] / value - 1.0):+.1f} %" for name in others)]

@@ -11,7 +11,7 @@ import argparse
 from pathlib import Path
 
 from demos.compute import compute
-from demos.figures import Texts, found, shown
+from demos.figures import Texts, matched, shown
 from demos.page import fill_pages, publish, table
 from riser_soil.accuracy.chosen_run import run_as_asked
 from riser_soil.checks.check import describe
@@ -33,10 +33,10 @@ def main(folder: Path, page: bool) -> None:
     pictures, done = PICTURES if page else folder, Run(folder)
     tables = {"figures": figures(done), "bars": bars(done), "stiffness": stiffness(done)}
     publish(tables, folder, PAGE if page else None)
-    told = told_of(done, compute(SCENE, folder / "coarser", COARSER, AT_REST))
-    print(shown(told))
+    texts = told_of(done, compute(SCENE, folder / "coarser", COARSER, AT_REST))
+    print(shown(texts))
     if page:
-        fill_pages(told)
+        fill_pages(texts)
     picture(folder, pictures / "touchdown.png")
     print(f"\nresults are in {folder}, touchdown.png in {pictures}; open riser.vtkhdf and soil.vtkhdf in ParaView")
 
@@ -70,7 +70,7 @@ def told_of(done: Run, coarser: Run) -> Texts:
     """Figures that pages tell of the run, of what `check` says before it, and of one at rest on coarser cells."""
     static, motion = done.summary["stages"]
     energy, checked = motion["energy"], describe(read_scene(SCENE))
-    along, across = found(r"cells of ([\d.]+) m along and ([\d.]+) m across", checked)
+    along, across = matched(r"cells of ([\d.]+) m along and ([\d.]+) m across", checked)
     return {
         "demo laid": f"{1e3 * static['soil']['max_settlement']['value']:.1f}",
         "demo deepest": f"{1e3 * motion['soil']['max_settlement']['value']:.1f}",
@@ -84,13 +84,13 @@ def told_of(done: Run, coarser: Run) -> Texts:
         "demo unknowns": f"{done.summary['dofs']['soil']:,}",
         "demo along": f"{float(along):.2g}",
         "demo across": f"{1e3 * float(across):.2g}",
-        "demo foretold": found(r"(it settles by about .* on these cells)", checked)[0],
+        "demo foretold": matched(r"(it settles by about .* on these cells)", checked)[0],
     }
 
 
 def bars(done: Run) -> str:
     """How far key results may be off, by runs with other steps, elements and cells."""
-    found = {(each["stage"], each["name"]): each for each in done.summary["error_bars"]["quantities"]}
+    by_name = {(each["stage"], each["name"]): each for each in done.summary["error_bars"]["quantities"]}
     rows = []
     for stage, name, unit, scale, digits in (
         ("lay", "touchdown arc", "m", 1.0, 2),
@@ -101,7 +101,7 @@ def bars(done: Run) -> str:
         ("heave", "largest bending moment", "kN m", 1e-3, 3),
         ("heave", "soil settlement", "mm", 1e3, 1),
     ):
-        each = found[stage, name]
+        each = by_name[stage, name]
         value, bar = (f"{scale * each[key]:.{digits}f}" for key in ("value", "bar"))
         rows.append([f"{stage}: {name} [{unit}]", f"{value} ± {bar}"])
     seconds = done.summary["error_bars"]["seconds"]
@@ -111,8 +111,8 @@ def bars(done: Run) -> str:
 
 def stiffness(done: Run) -> str:
     """Secant stiffness over su, cycle by cycle."""
-    found = secant_stiffness(done, ARCS)
-    rows = ([f"{n}", *(f"{k:.0f}" for k in ks)] for n, ks in enumerate(found.over_su, 1))
+    stiffnesses = secant_stiffness(done, ARCS)
+    rows = ([f"{n}", *(f"{k:.0f}" for k in ks)] for n, ks in enumerate(stiffnesses.over_su, 1))
     return table(["cycle, k/su at arc length", *(f"{arc:g} m" for arc in ARCS)], rows)
 
 

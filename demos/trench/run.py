@@ -26,10 +26,10 @@ EDGE, FLOOR = (8.0, 16.0), (18.0, 23.0)  # m along the riser, around where it go
 def main(results: Path, page: bool) -> None:
     runs = {"trench": compute(SCENE, results / "trench"), "level soil": compute(SCENE, results / "level", LEVEL)}
     publish({"trench": comparison(runs)}, results, PAGE if page else None)
-    told = {**edges(runs["trench"]), **effort(runs)}
-    print(shown(told))
+    texts = {**edges(runs["trench"]), **effort(runs)}
+    print(shown(texts))
     if page:
-        fill_pages(told)
+        fill_pages(texts)
     pictures = PICTURES if page else results
     draw(pictures / "trench.png", runs)
     print(f"\nthe runs and the table are in {results}, the picture in {pictures}")
@@ -37,13 +37,13 @@ def main(results: Path, page: bool) -> None:
 
 def comparison(runs: dict[str, Run]) -> str:
     """Both runs at the end of their static stage, and the ranges while the floater moves."""
-    found = [rows(run.summary["stages"]) for run in runs.values()]
-    return table(["", *runs], ([name, *(column[name] for column in found)] for name in found[0]))
+    tables = [rows(run.summary["stages"]) for run in runs.values()]
+    return table(["", *runs], ([name, *(column[name] for column in tables)] for name in tables[0]))
 
 
 def rows(stages: list[dict[str, Any]]) -> dict[str, str]:
     final, moment = stages[0]["final"], stages[0]["final"]["max_bending_moment"]
-    found = {
+    values = {
         "at rest: touchdown arc length [m]": f"{final['touchdown_arc']:.2f}",
         "stretches that touch": f"{final['touchdown_points']:.0f}",
         "largest bending moment [kN m]": f"{moment['value'] / 1e3:.3f}",
@@ -52,9 +52,9 @@ def rows(stages: list[dict[str, Any]]) -> dict[str, str]:
     }
     for stage in stages[1:]:
         touchdown, bent = (stage["extremes"][key] for key in ("touchdown_arc", "max_bending_moment"))
-        found["in heave: touchdown arc length [m]"] = f"{touchdown['min']:.2f} to {touchdown['max']:.2f}"
-        found["largest bending moment, in heave [kN m]"] = f"{bent['min'] / 1e3:.3f} to {bent['max'] / 1e3:.3f}"
-    return found
+        values["in heave: touchdown arc length [m]"] = f"{touchdown['min']:.2f} to {touchdown['max']:.2f}"
+        values["largest bending moment, in heave [kN m]"] = f"{bent['min'] / 1e3:.3f} to {bent['max'] / 1e3:.3f}"
+    return values
 
 
 def edges(run: Run) -> dict[str, str]:

@@ -55,9 +55,9 @@ def in_waves(run: Run, since: float) -> Iterator[Check]:
     """Standard deviations of the turret's motion: from the formulas behind rao.csv, for this very sea wave by wave, and
     for all seas with its spectrum.
     """
-    seen = run.time >= since
-    moved = run["position"][seen, -1].std(axis=0)
-    for against, expected in (("this sea", answer(run.time[seen]).std(axis=1)), ("its spectrum", deviations())):
+    window = run.time >= since
+    moved = run["position"][window, -1].std(axis=0)
+    for against, expected in (("this sea", answer(run.time[window]).std(axis=1)), ("its spectrum", deviations())):
         for name, value, other in zip(("x", "y", "z"), moved, expected, strict=True):
             yield f"standard deviation of the turret's {name}, {against}", "m", float(value), float(other)
 
@@ -78,8 +78,8 @@ def answer(t: Array) -> Array:
 
 def turret(w: Array) -> Array:
     """Complex responses (3, n) [m/m] of the turret to exp(i w t) at midship, w (n,) [rad/s]."""
-    found = responses(w, HEADING)
-    return found[:3] + np.cross(found[3:], ARM, axisa=0, axisb=0, axisc=0)
+    response = responses(w, HEADING)
+    return response[:3] + np.cross(response[3:], ARM, axisa=0, axisb=0, axisc=0)
 
 
 def jonswap(w: Array) -> Array:
@@ -93,7 +93,7 @@ def jonswap(w: Array) -> Array:
 def page(checks: list[Check]) -> str:
     """As Markdown."""
     rows = []
-    for name, unit, found, expected in checks:
-        difference = f"{100.0 * (found / expected - 1.0):.2f} %"
-        rows.append([f"{name} [{unit}]", f"{found:.4g}", f"{expected:.4g}", difference])
+    for name, unit, value, expected in checks:
+        difference = f"{100.0 * (value / expected - 1.0):.2f} %"
+        rows.append([f"{name} [{unit}]", f"{value:.4g}", f"{expected:.4g}", difference])
     return table(["quantity, and what it is compared with", "found", "expected", "difference"], rows)

@@ -24,13 +24,13 @@ ZONES = {"touchdown": (35.0, 60.0), "bends": (60.0, 200.0), "turret": (220.0, np
 
 
 def main(results: Path, page: bool) -> None:
-    found = {}
+    outcomes = {}
     for factor, time_step in CASES:
         overrides = (*shortened(factor), f"stages.1.time_step={time_step}")
         run, seconds = timed(SCENE, results / f"convergence_{factor}_{time_step}", *overrides)
-        found[factor, time_step] = (run.arc.size - 1, seconds, extremes(run))
+        outcomes[factor, time_step] = (run.arc.size - 1, seconds, extremes(run))
         print(f"{run.arc.size - 1} elements, {time_step} s: {seconds:.0f} s", flush=True)
-    publish({"extremes": as_table(found)}, results, PAGE if page else None)
+    publish({"extremes": as_table(outcomes)}, results, PAGE if page else None)
 
 
 def shortened(factor: float) -> list[str]:
@@ -43,21 +43,21 @@ def shortened(factor: float) -> list[str]:
 
 def extremes(run: Run) -> dict[str, float]:
     """From SINCE on: tension at the turret [kN], moments by zone [kN m], touchdown arc [m]."""
-    seen = run.time >= SINCE
-    tension, moment = 1e-3 * run["effective_tension"][seen, -1], 1e-3 * run["bending_moment"][seen]
-    found = {"T min": -float(peak(run.time[seen], -tension)), "T max": float(peak(run.time[seen], tension))}
+    window = run.time >= SINCE
+    tension, moment = 1e-3 * run["effective_tension"][window, -1], 1e-3 * run["bending_moment"][window]
+    values = {"T min": -float(peak(run.time[window], -tension)), "T max": float(peak(run.time[window], tension))}
     for name, (first, last) in ZONES.items():
         zone = (run.arc >= first) & (run.arc <= last)
-        found[f"M {name}"] = float(peak(run.time[seen], moment[:, zone].max(axis=1)))
-    touchdown = run["touchdown_arc"][seen]
-    return found | {"s min": float(touchdown.min()), "s max": float(touchdown.max())}
+        values[f"M {name}"] = float(peak(run.time[window], moment[:, zone].max(axis=1)))
+    touchdown = run["touchdown_arc"][window]
+    return values | {"s min": float(touchdown.min()), "s max": float(touchdown.max())}
 
 
-def as_table(found: Mapping[tuple[float, float], tuple[int, float, dict[str, float]]]) -> str:
+def as_table(results: Mapping[tuple[float, float], tuple[int, float, dict[str, float]]]) -> str:
     """As Markdown, with the largest error of tensions, of moments, and of the touchdown arc."""
-    best = found[CASES[-1]][2]
+    best = results[CASES[-1]][2]
     rows = []
-    for (_, time_step), (elements, seconds, values) in found.items():
+    for (_, time_step), (elements, seconds, values) in results.items():
         apart = {kind: max(abs(values[k] / best[k] - 1.0) for k in best if k[0] == kind) for kind in "TMs"}
         errors = [f"{100.0 * value:.2f} %" for value in apart.values()]
         shown = [f"{value:.4g}" for value in values.values()]

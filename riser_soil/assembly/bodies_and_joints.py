@@ -55,11 +55,11 @@ class Hung:
         joints = [] if self.joints is None else [self.joints]
         return [*self.weights.values(), *self.contacts.values(), *self.frictions.values(), *joints]
 
-    def _hold(self, held: bool) -> None:
+    def _hold(self, fixed: bool) -> None:
         for body in self.bodies.values():
-            body.hold(held)
+            body.hold(fixed)
         if self.joints is not None:
-            self.joints.open = float(held)
+            self.joints.open = float(fixed)
 
     def close(self) -> list[Part]:
         """Hold the bodies in place while joints close, and return the parts of that stage."""

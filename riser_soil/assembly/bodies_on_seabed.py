@@ -69,19 +69,19 @@ def on_seabed(
     weights: Mapping[str, BodyWeight],
 ) -> OnSeabed:
     """Contact and friction of a scene's bodies; none without a seabed."""
-    found = OnSeabed({}, {})
+    parts = OnSeabed({}, {})
     if scene.seabed is None or scene.contact is None:
-        return found
+        return parts
     any_line = next(iter(lines.values())).scene  # all see the same ground
     shape = ground_of(any_line, scene.seabed)
     for name, field in bodies.items():
         if why_apart(scene, name):
             continue
         body = _body(scene, name, field, given[name], weights[name], lines)
-        found.contacts[name] = contact = _contact(scene, scene.seabed, scene.contact, body, shape)
+        parts.contacts[name] = contact = _contact(scene, scene.seabed, scene.contact, body, shape)
         if (friction := _friction(scene.seabed, scene.contact, body, contact)) is not None:
-            found.frictions[name] = friction
-    return found
+            parts.frictions[name] = friction
+    return parts
 
 
 def _body(

@@ -157,8 +157,8 @@ def settled(ends: Sequence[HungEnd], values: Sequence[float]) -> Scene:
     scene = with_values(ends, values)
     for problem in all_conflicts(scene):
         wrong = message(problem, scene.model_dump(by_alias=True))
-        found = " and ".join(in_words(hung, value) for hung, value in zip(ends, values, strict=True))
-        raise SceneError(f"{ends[0].path}: {found} but then {wrong}")
+        words = " and ".join(in_words(hung, value) for hung, value in zip(ends, values, strict=True))
+        raise SceneError(f"{ends[0].path}: {words} but then {wrong}")
     return scene
 
 
@@ -179,16 +179,16 @@ def by_cable(hung: HungEnd, asked: float) -> float:
     """
     from scipy.optimize import brentq
 
-    values, seen = _looked_at(hung), list[float]()
+    values, looks = _looked_at(hung), list[float]()
     for n, value in enumerate(values):
-        seen.append(_seen(hung, value))
-        if n and (seen[-1] - asked) * (seen[-2] - asked) <= 0.0:
+        looks.append(_seen(hung, value))
+        if n and (looks[-1] - asked) * (looks[-2] - asked) <= 0.0:
             between, close = values[n - 1 : n + 1], CLOSE * max(values)
             return float(brentq(lambda x: _seen(hung, x) - asked, *between, xtol=close, rtol=CLOSE))
     what = "length" if hung.asked.by == "length" else "layback"
     raise SceneError(
         f"{hung.path}: {hung.request} is out of reach: as a cable, with a {what} from {min(values):.4g} to "
-        f"{max(values):.4g} m, it has {min(seen):.4g} to {max(seen):.4g} {hung.asked.unit}; ask for what lies between, "
+        f"{max(values):.4g} m, it has {min(looks):.4g} to {max(looks):.4g} {hung.asked.unit}; ask for a value between, "
         "or change the segments or the height"
     )
 

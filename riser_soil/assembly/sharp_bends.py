@@ -70,13 +70,13 @@ def _sharp_bends(scene: Scene) -> tuple[Array, Array] | None:
     except SceneError:  # said where the line is built
         return None
     hung = np.array([each.arc for each in attachments if 0.0 < each.arc < elements.arc[-1]])
-    found = [_kinks(cable, elements, hung)]
+    sharp = [_kinks(cable, elements, hung)]
     if not (start.jointed or end.jointed):  # else where its ends come to rest is not known before they do
         bends, lengths = _bends(cable, elements)
         if cable.heaped and any(isinstance(each, DynamicStage) and each.motion for each in scene.stages):
             lengths = np.maximum(lengths, FINEST_MOVED * np.ptp(cable.curve.position[:, 2]))
-        found.append((bends, lengths))
-    arcs, lengths = (np.concatenate(each) for each in zip(*found, strict=True))
+        sharp.append((bends, lengths))
+    arcs, lengths = (np.concatenate(each) for each in zip(*sharp, strict=True))
     height = max(float(np.ptp(cable.curve.position[:, 2])), SHORTEST * float(elements.arc[-1]))
     return (arcs, np.maximum(lengths, FINEST * height)) if arcs.size else None
 

@@ -142,10 +142,10 @@ class SoilSizes:
         return min(ALONG * shortest, LONGEST * self.scales.diameter)
 
 
-def _farther(found: TouchdownForecast) -> Array:
+def _farther(forecast: TouchdownForecast) -> Array:
     """Touchdown points (n, 2) that the ends' motions lead to, somewhat farther than statics say."""
-    first = found.points[0]
-    return np.asarray(first + DYNAMIC * (found.points - first))
+    first = forecast.points[0]
+    return np.asarray(first + DYNAMIC * (forecast.points - first))
 
 
 def bending_on_soil(elements: Elements, law: SoilLaw) -> float:

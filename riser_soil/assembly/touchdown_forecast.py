@@ -42,10 +42,10 @@ def forecast(scene: Scene, elements: Elements, places: Sequence[EndPlaces]) -> T
     attachments = attachments_of(scene)
     if not all(isinstance(end, Support) for end in (scene.line.start, scene.line.end)):
         return None
-    found = [_touchdown(scene, elements, attachments, *ends) for ends in extreme_places(places)]
-    if not found or found[0] is None:
+    touchdowns = [_touchdown(scene, elements, attachments, *ends) for ends in extreme_places(places)]
+    if not touchdowns or touchdowns[0] is None:
         return None
-    return TouchdownForecast(np.array([point for point, *_ in filter(None, found)]), *found[0][1:])
+    return TouchdownForecast(np.array([point for point, *_ in filter(None, touchdowns)]), *touchdowns[0][1:])
 
 
 def extreme_places(places: Sequence[EndPlaces]) -> Iterator[tuple[Array, Array]]:
@@ -66,14 +66,14 @@ def _touchdown(
 ) -> tuple[Array, float, Array] | None:
     """Touchdown point in plan (2,), horizontal tension [N], unit vector ahead in plan (2,)."""
     try:
-        found = catenary_between(scene, elements, attachments, start, end)
+        cable = catenary_between(scene, elements, attachments, start, end)
     except SceneError:
         return None
-    return _in_plan(scene, elements, found)
+    return _in_plan(scene, elements, cable)
 
 
-def _in_plan(scene: Scene, elements: Elements, found: Catenary) -> tuple[Array, float, Array] | None:
-    position = found.curve.position
+def _in_plan(scene: Scene, elements: Elements, cable: Catenary) -> tuple[Array, float, Array] | None:
+    position = cable.curve.position
     height = position[:, 2] - resting_level(scene, elements, position[[0, -1]])
     diameter = float(elements.outer_diameter.max())
     hangs = height > max(OFF_GROUND * diameter, 1e-6 * float(elements.arc[-1]))
@@ -85,5 +85,5 @@ def _in_plan(scene: Scene, elements: Elements, found: Catenary) -> tuple[Array, 
     w = float(elements.weight[at])
     step = position[up, :2] - position[lies, :2]
     ahead = step / (float(np.linalg.norm(step)) or 1.0)
-    before = np.sqrt(2.0 * height[up] * found.H / w) if w > 0.0 else 0.0
-    return position[up, :2] - before * ahead, found.H, ahead
+    before = np.sqrt(2.0 * height[up] * cable.H / w) if w > 0.0 else 0.0
+    return position[up, :2] - before * ahead, cable.H, ahead

@@ -78,9 +78,9 @@ class MovingBody(MovingNodes):
         finally:
             self.prescribed = free
 
-    def hold(self, held: bool) -> None:
+    def hold(self, fixed: bool) -> None:
         """Whether it is kept from moving; until the next call."""
-        self.prescribed = np.full(self.size, held)
+        self.prescribed = np.full(self.size, fixed)
         self.prescribed[3:] |= not self.turns
         self.prescribed[self._out] = True
 

@@ -136,8 +136,8 @@ class Joints:
             x, R = (np.array([get(side) for side in sides]) for get in (_place, _frame))
             R = R.reshape(m, 2, 3, 3)
             return JointPlaces(x.reshape(m, 2, 3), np.zeros((m, 2, 3)), R, R, R)
-        found = [_look(side, state) for side in sides]
-        x, Theta, R, H, Rn = (np.array(values) for values in zip(*found, strict=True))
+        places = [_look(side, state) for side in sides]
+        x, Theta, R, H, Rn = (np.array(values) for values in zip(*places, strict=True))
         vectors, frames = (m, 2, 3), (m, 2, 3, 3)
         return JointPlaces(
             x.reshape(vectors), Theta.reshape(vectors), R.reshape(frames), H.reshape(frames), Rn.reshape(frames)

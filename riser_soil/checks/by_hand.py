@@ -70,10 +70,10 @@ def _touchdown(riser: LineAssembly, cable: Catenary, name: str) -> Iterator[str]
     at, near = (-1, lying[-1]) if name == "end" else (0, lying[0])
     arc, end = riser.line.arc, riser.line.arc[at]
     V = float(np.sqrt(max(cable.tension[at] ** 2 - cable.H**2, 0.0)))
-    found = _arcs_that_carry(riser, V, name == "end")
-    if not found.size:
+    arcs = _arcs_that_carry(riser, V, name == "end")
+    if not arcs.size:
         return
-    touchdown = float(found[np.abs(found - arc[near]).argmin()])
+    touchdown = float(arcs[np.abs(arcs - arc[near]).argmin()])
     place = np.array([np.interp(touchdown, arc, each) for each in cable.curve.position[:, :2].T])
     layback = float(np.linalg.norm(cable.curve.position[at, :2] - place))
     element = min(int(lying[-1]), arc.size - 2) if name == "end" else max(int(lying[0]) - 1, 0)

@@ -242,11 +242,11 @@ def _whole(riser: LineAssembly) -> Iterator[str]:
     """Length and weights of the whole line."""
     elements = riser.elements
     mass, wet = (float(each @ elements.length) for each in (elements.mass, elements.weight))
-    held = sum(attachment.net_weight for attachment in riser.attachments)
+    net_weight = sum(attachment.net_weight for attachment in riser.attachments)
     parts = [f"line: {elements.length.sum():.6g} m"]
     if mass > 0.0:
         parts.append(f"{mass / 1e3:.4g} t with contents, weight in air {riser.scene.gravity * mass / 1e3:.4g} kN")
     parts.append(f"in water {wet / 1e3:.4g} kN")
     if riser.attachments:
-        parts.append(f"with attachments {(wet + held) / 1e3:.4g} kN")
+        parts.append(f"with attachments {(wet + net_weight) / 1e3:.4g} kN")
     yield ", ".join(parts)

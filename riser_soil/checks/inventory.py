@@ -77,12 +77,12 @@ def _accounts(given: tuple[str, ...], names: set[str]) -> list[str]:
 
 def _results_left_out(assembly: Assembly) -> dict[str, str]:
     """What is no part, and why it is not computed."""
-    found = {} if assembly.scene.code_check else {"code check": "the scene has no code_check"}
+    left_out = {} if assembly.scene.code_check else {"code check": "the scene has no code_check"}
     if assembly.soil is not None and assembly.soil.whole.grid.mirror is not None:
-        found["half of the soil"] = "by symmetry"
+        left_out["half of the soil"] = "by symmetry"
     if all(own.pressures is None for own in assembly.lines.values()):
-        found["wall tension"] = no_wall_tension(next(iter(assembly.lines.values())).scene)
-    return found
+        left_out["wall tension"] = no_wall_tension(next(iter(assembly.lines.values())).scene)
+    return left_out
 
 
 def _static_or(reason: str) -> Callable[[Scene], str]:

@@ -29,24 +29,24 @@ def resolution_in_words(riser: LineAssembly) -> str | None:
     mesh, soil = _generated(riser), riser.scene.soil
     if mesh is None or soil is None or riser.soil is None:
         return None
-    fine, found = predicted_settlement(riser), predicted_settlement(riser, mesh.across)
-    if fine is None or found is None:
+    fine, on_mesh = predicted_settlement(riser), predicted_settlement(riser, mesh.across)
+    if fine is None or on_mesh is None:
         return None
     width = touching_width(riser.scales, soil.top_law)
     return (
         f"soil under the riser: cells of {size_in_words(mesh)}, where {width:.3g} m touch at rest: it settles by about "
         f"{1000.0 * fine.by_weight:.2g} mm under its weight, at the touchdown point by {1000.0 * fine.deepest:.2g} mm, "
-        f"and {missed(found, fine):.0%} less on these cells"
+        f"and {missed(on_mesh, fine):.0%} less on these cells"
     )
 
 
-def missed(found: Settled, fine: Settled) -> float:
+def missed(on_mesh: Settled, fine: Settled) -> float:
     """The part of the settlement that cells miss which grow to 0.6 of the soil's depth, beside fine ones throughout
     (test_automatic_mesh). Soil so thin that nothing settles has nothing to miss.
     """
     if fine.deepest == 0.0:
         return 0.0
-    return GRADED + max(0.0, 1.0 - found.deepest / fine.deepest)
+    return GRADED + max(0.0, 1.0 - on_mesh.deepest / fine.deepest)
 
 
 def excess_of_sections(bending: float, width: float, depth: float) -> float:
@@ -93,12 +93,12 @@ def _cells_against_contact(riser: LineAssembly) -> Iterator[str]:
     mesh, soil = _generated(riser), riser.scene.soil
     if mesh is None or soil is None:
         return
-    fine, found, size = predicted_settlement(riser), predicted_settlement(riser, mesh.across), mesh.across
-    if fine is not None and found is not None and missed(found, fine) > GRADED + MISSING:
+    fine, on_mesh, size = predicted_settlement(riser), predicted_settlement(riser, mesh.across), mesh.across
+    if fine is not None and on_mesh is not None and missed(on_mesh, fine) > GRADED + MISSING:
         width = touching_width(riser.scales, soil.top_law)
         yield (
             f"soil.mesh.{_key(mesh)} {size:.4g} m is {size / width:.2g} times the {width:.3g} m by which the riser "
-            f"touches at rest: it settles by about {1000.0 * found.deepest:.2g} mm, not by the "
+            f"touches at rest: it settles by about {1000.0 * on_mesh.deepest:.2g} mm, not by the "
             f"{1000.0 * fine.deepest:.2g} mm of fine cells; take at most {0.5 * width:.2g} m where settlement or "
             "stress in the soil matters, or mesh: auto"
         )
@@ -166,14 +166,14 @@ def _leaves_the_block(riser: LineAssembly) -> Iterator[str]:
     they move.
     """
     assert riser.soil is not None
-    found = riser.touchdown
-    if found is None:
+    forecast = riser.touchdown
+    if forecast is None:
         return
-    yield from _leaves_fine_cells(riser, found)
+    yield from _leaves_fine_cells(riser, forecast)
     low, high = riser.soil.whole.grid.low[:2], riser.soil.whole.grid.high[:2]
-    beyond = np.maximum(np.maximum(low - found.points, found.points - high), 0.0).max(axis=1)
+    beyond = np.maximum(np.maximum(low - forecast.points, forecast.points - high), 0.0).max(axis=1)
     if beyond[0] == 0.0 and beyond.max() > 0.0:
-        at = found.points[beyond.argmax()]
+        at = forecast.points[beyond.argmax()]
         yield (
             "the touchdown point leaves the soil's block as the ends move: by statics it comes to x = "
             f"{at[0]:.5g}, y = {at[1]:.5g} m, {beyond.max():.3g} m beyond x from {low[0]:.5g} to {high[0]:.5g} m and "
@@ -181,12 +181,12 @@ def _leaves_the_block(riser: LineAssembly) -> Iterator[str]:
         )
 
 
-def _leaves_fine_cells(riser: LineAssembly, found: TouchdownForecast) -> Iterator[str]:
+def _leaves_fine_cells(riser: LineAssembly, forecast: TouchdownForecast) -> Iterator[str]:
     mesh = _generated(riser)
     if mesh is None or mesh.touchdown is None:
         return
-    (low, high), axis = mesh.touchdown, int(np.argmax(np.abs(found.ahead)))
-    at = found.points[:, axis]
+    (low, high), axis = mesh.touchdown, int(np.argmax(np.abs(forecast.ahead)))
+    at = forecast.points[:, axis]
     if at.min() < low or at.max() > high:
         yield (
             f"soil.mesh.size_at_riser.touchdown is {'xy'[axis]} from {low:.5g} to {high:.5g} m, and by statics the "

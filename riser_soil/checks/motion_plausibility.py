@@ -63,8 +63,8 @@ def motion_warnings(riser: LineAssembly) -> Iterator[str]:
 def farthest_move(riser: LineAssembly) -> float:
     """The largest distance [m] of an end from where it was at first, in all stages."""
     places = riser.end_places
-    found = [np.linalg.norm(x - places[0][name][0], axis=1).max() for place in places for name, x in place.items()]
-    return float(max(found, default=0.0))
+    distances = [np.linalg.norm(x - places[0][name][0], axis=1).max() for place in places for name, x in place.items()]
+    return float(max(distances, default=0.0))
 
 
 def top_speed(riser: LineAssembly) -> float:
@@ -72,8 +72,8 @@ def top_speed(riser: LineAssembly) -> float:
     ends = [(name, getattr(riser.scene.line, name)) for name in ("start", "end")]
     courses = [_courses(riser, name, end) for name, end in ends if isinstance(end, Support)]
     moving = zip(riser.scene.stages, *courses, strict=True)
-    found = [each["m/s"].top for stage, *course in moving if isinstance(stage, DynamicStage) for each in course]
-    return max(found, default=0.0)
+    speeds = [each["m/s"].top for stage, *course in moving if isinstance(stage, DynamicStage) for each in course]
+    return max(speeds, default=0.0)
 
 
 def refuse_unreachable(scene: Scene) -> None:
@@ -88,8 +88,8 @@ def refuse_unreachable(scene: Scene) -> None:
 
 
 def _refuse_far(scene: Scene, path: str, place: dict[str, Array], times: Array) -> None:
-    held = (isinstance(end, Support) and not end.jointed for end in (scene.line.start, scene.line.end))
-    if not all(held):
+    fixed = (isinstance(end, Support) and not end.jointed for end in (scene.line.start, scene.line.end))
+    if not all(fixed):
         return
     apart, length = np.linalg.norm(place["end"] - place["start"], axis=1), scene.line.length
     at = int(apart.argmax())

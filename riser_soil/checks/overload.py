@@ -38,8 +38,8 @@ def overload(assembly: Assembly) -> str:
     A riser that sinks may yet be caught, as by firmer ground beside: this explains a failure and foretells none.
     """
     state = State.at_rest(0.0, assembly.size)
-    found = (each for name, own in assembly.lines.items() for each in _overloads(own, name, state))
-    worst = max(found, key=lambda each: each.load / each.capacity, default=None)
+    overloads = (each for name, own in assembly.lines.items() for each in _overloads(own, name, state))
+    worst = max(overloads, key=lambda each: each.load / each.capacity, default=None)
     worst = assembly.comm.bcast(worst)
     if worst is None:
         return ""

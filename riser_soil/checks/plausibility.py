@@ -29,9 +29,9 @@ def physical_warnings(assembly: Assembly) -> Iterator[str]:
     if not assembly.scene.lines:
         yield from _of_one(assembly.riser)
         return
-    found = {name: [_placed(each, name) for each in _of_one(line)] for name, line in assembly.lines.items()}
-    for warning in dict.fromkeys(each for of_line in found.values() for each in of_line):
-        names = [name for name, of_line in found.items() if warning in of_line]
+    warnings = {name: [_placed(each, name) for each in _of_one(line)] for name, line in assembly.lines.items()}
+    for warning in dict.fromkeys(each for of_line in warnings.values() for each in of_line):
+        names = [name for name, of_line in warnings.items() if warning in of_line]
         of_its_own = names[0] in warning.partition(":")[0].split(".")
         yield warning if of_its_own else f"{', '.join(names)}: {warning}"
     yield from _body_loads_that_end(assembly.scene)
@@ -122,8 +122,8 @@ def _meant_to_float(riser: LineAssembly) -> BoolArray:
     heavy = np.flatnonzero(weight > 0.0)
     if heavy.size:
         meant[heavy[0] : heavy[-1]] = True
-    held = float(weight @ riser.elements.length) + sum(each.net_weight for each in riser.attachments)
-    return np.asarray(meant & (held > 0.0))
+    net_weight = float(weight @ riser.elements.length) + sum(each.net_weight for each in riser.attachments)
+    return np.asarray(meant & (net_weight > 0.0))
 
 
 def _beyond_the_rao(riser: LineAssembly) -> Iterator[str]:

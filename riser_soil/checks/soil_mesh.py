@@ -18,34 +18,34 @@ ACROSS = 1e-6  # part of a cell's height by which it may reach over a boundary
 def mesh_report(riser: LineAssembly) -> Iterator[str]:
     """Lines of `check` about the soil's cells; collective."""
     assert riser.soil is not None
-    found = quality_of(riser.soil.whole.grid)
+    cells = quality_of(riser.soil.whole.grid)
     yield (
-        f"soil mesh: edges of {found.smallest:.4g} to {found.largest:.4g} m, aspect ratios up to {found.aspect:.3g}, "
-        f"scaled Jacobians from {found.jacobian:.3g} (1 is best)"
+        f"soil mesh: edges of {cells.smallest:.4g} to {cells.largest:.4g} m, aspect ratios up to {cells.aspect:.3g}, "
+        f"scaled Jacobians from {cells.jacobian:.3g} (1 is best)"
     )
     assert riser.scene.soil is not None
     depths = boundaries(riser.scene.soil.layers or ())
     if depths:
         depths_listed = ", ".join(f"{depth:g}" for depth in depths)
-        cells = _cells_across(riser, depths)
-        lie = f"{cells} cells lie across, each of whose points has the law of its depth" if cells else "cells end there"
-        yield f"soil layers meet at depths of {depths_listed} m; {lie}"
+        crossing = _cells_across(riser, depths)
+        across = f"{crossing} cells lie across, each of whose points has the law of its depth"
+        yield f"soil layers meet at depths of {depths_listed} m; {across if crossing else 'cells end there'}"
 
 
 def quality_warnings(riser: LineAssembly) -> Iterator[str]:
     """Warnings about the shape of the soil's cells; collective."""
     assert riser.soil is not None
     grid = riser.soil.whole.grid
-    found, tetrahedra = quality_of(grid), grid.family.corners == 3
-    if found.poor:
+    cells, tetrahedra = quality_of(grid), grid.family.corners == 3
+    if cells.poor:
         yield (
-            f"soil mesh: {found.poor} cells have a scaled Jacobian below {POOR:g}, the worst, at "
-            f"{_place(found.skewed)}, {found.jacobian:.2g}: strain is poor there; mend the mesh, or take other sizes"
+            f"soil mesh: {cells.poor} cells have a scaled Jacobian below {POOR:g}, the worst, at "
+            f"{_place(cells.skewed)}, {cells.jacobian:.2g}: strain is poor there; mend the mesh, or take other sizes"
         )
     limit = THIN_TETRAHEDRA if tetrahedra else LONG_HEXAHEDRA
-    if found.aspect > limit:
+    if cells.aspect > limit:
         yield (
-            f"soil mesh: the cell at {_place(found.thin)} has an aspect ratio of {found.aspect:.3g}, above {limit:g}: "
+            f"soil mesh: the cell at {_place(cells.thin)} has an aspect ratio of {cells.aspect:.3g}, above {limit:g}: "
             "bring its sizes nearer to each other"
         )
 

@@ -245,9 +245,9 @@ class ApiCriteria:
     def _combined(self, effects: LoadEffects, inner: Array | float, outer: Array | float) -> Array:
         """inner, outer: net overpressures over p_b and p_c, one of them 0."""
         D, t, (S, _), c = self.pipe.diameter, self.pipe.thickness, self.strengths, self.check
-        found = effects.all
-        tension = np.abs(found.tension) / api_std_2rd.yield_tension(D, t, S)
-        moment = np.hypot(found.moment_y, found.moment_z)
+        all_effects = effects.all
+        tension = np.abs(all_effects.tension) / api_std_2rd.yield_tension(D, t, S)
+        moment = np.hypot(all_effects.moment_y, all_effects.moment_z)
         factor = api_std_2rd.design_factor(c.case, outer) if c.design_factor is None else c.design_factor
         if c.method == 1:
             return api_std_2rd.method_1(tension, moment / api_std_2rd.yield_moment(D, t, S), inner + outer, factor)
@@ -276,10 +276,10 @@ class ApiStressCriteria:
         return {"combined_loading": np.maximum(*(self._used(loads, inside) for inside in both))}
 
     def _used(self, loads: NodeLoads, inside: Array | float) -> Array:
-        c, pipe, found = self.check, self.pipe, loads.effects.all
-        moment = np.hypot(found.moment_y, found.moment_z)
+        c, pipe, effects = self.check, self.pipe, loads.effects.all
+        moment = np.hypot(effects.moment_y, effects.moment_z)
         D, t = pipe.diameter, pipe.thickness
-        wall_tension = found.tension + 0.25 * np.pi * (inside * (D - 2.0 * t) ** 2 - loads.outside * D**2)
+        wall_tension = effects.tension + 0.25 * np.pi * (inside * (D - 2.0 * t) ** 2 - loads.outside * D**2)
         stress = api_rp_2rd.largest_stress(D, t, t - c.thinning, wall_tension, moment, inside, loads.outside)
         return api_rp_2rd.utilisation(stress, c.yield_stress - c.yield_derating, c.case)
 
@@ -306,16 +306,16 @@ class FlexibleCriteria:
         return tuple(criterion for criterion, limit in given.items() if limit)
 
     def utilisations(self, loads: NodeLoads) -> dict[str, Array]:
-        c, T, found = self.check, loads.effects.all.tension, dict[str, Array]()
+        c, T, used = self.check, loads.effects.all.tension, dict[str, Array]()
         if (radius := c.radius(loads.moving)) is not None:
-            found["bend_radius"] = flexible_pipe.bend_radius(loads.curvature, radius)
+            used["bend_radius"] = flexible_pipe.bend_radius(loads.curvature, radius)
         if c.max_tension is not None:
-            found["tension_limit"] = flexible_pipe.tension(T, c.max_tension)
+            used["tension_limit"] = flexible_pipe.tension(T, c.max_tension)
         if c.max_compression is not None:
-            found["compression"] = flexible_pipe.compression(T, c.max_compression)
+            used["compression"] = flexible_pipe.compression(T, c.max_compression)
         if c.max_contact_force is not None:
-            found["crushing"] = flexible_pipe.crushing(loads.contact_force, c.max_contact_force)
-        return found
+            used["crushing"] = flexible_pipe.crushing(loads.contact_force, c.max_contact_force)
+        return used
 
 
 @dataclass(frozen=True)

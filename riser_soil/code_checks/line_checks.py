@@ -114,9 +114,10 @@ class LineChecks:
             along = (inside, outside, curvature, contact_force)
             p_i, p_o, curved, pressed = (values[..., part.nodes] for values in along)
             own = _of_part(split[part.reference], part)
-            found = part.criteria.utilisations(NodeLoads(own, p_i, p_o, at_reference, curved, pressed, self._moving))
+            loads = NodeLoads(own, p_i, p_o, at_reference, curved, pressed, self._moving)
+            utilisations = part.criteria.utilisations(loads)
             for criterion in part.criteria.criteria:
-                used = np.broadcast_to(found[criterion.field], p_i.shape)
+                used = np.broadcast_to(utilisations[criterion.field], p_i.shape)
                 values = at_nodes[criterion.field]
                 values[..., part.nodes] = np.maximum(values[..., part.nodes], used)
                 largest.append(used.max(axis=-1))

@@ -36,13 +36,13 @@ class Reference:
 
     def split(self, now: SectionEffects) -> LoadEffects:
         """Effects (nt, nn) at instants of the present stage, in turn, by their kinds."""
-        found, zero = np.stack(now), np.zeros_like(now.tension)
+        stacked, zero = np.stack(now), np.zeros_like(now.tension)
         none = SectionEffects(zero, zero, zero)
         if self._is_functional:
-            self._found["functional"] = found[:, -1].copy()
+            self._found["functional"] = stacked[:, -1].copy()
             return LoadEffects(now, none, none)
-        functional = self._found.setdefault("functional", found[:, 0].copy())[:, None]
-        added = found - functional
+        functional = self._found.setdefault("functional", stacked[:, 0].copy())[:, None]
+        added = stacked - functional
         if self._stage == self._accident:
             self._found["accidental"] = added[:, -1].copy()
             return LoadEffects(_effects(functional + 0.0 * added), none, _effects(added))

@@ -46,7 +46,7 @@ def expected_errors() -> Iterator[None]:
         _end_other_ranks(err.exit_status)
         raise typer.Exit(err.exit_status) from err
     except Interruption as err:
-        err.reported = True
+        err.announced = True
         if rank() == 0 or not err.together:
             _tell_once(str(err))
         if not err.together:

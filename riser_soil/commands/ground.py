@@ -78,5 +78,5 @@ def calibrate(
         read(scene, overrides)
         with placed(scene, overrides):
             also = overrides or ()
-            found = find(data, scene, wanted, folder, overrides=also, step=step, relative=relative, force=force)
-        typer.echo("\n".join([*result_lines(found), f"calibrated scene, fit and picture are in {folder}"]))
+            fit = find(data, scene, wanted, folder, overrides=also, step=step, relative=relative, force=force)
+        typer.echo("\n".join([*result_lines(fit), f"calibrated scene, fit and picture are in {folder}"]))

@@ -40,12 +40,12 @@ def import_(
         if rank() > 0:
             return
         scene = output or Path(f"{file.stem}.yaml")
-        found = _imported(file, line, scene.stem)
-        for name in (scene.name, *found.files):
+        imported = _imported(file, line, scene.stem)
+        for name in (scene.name, *imported.files):
             refuse_existing(scene.parent / name, force)
-        lost = [f"{file.name}:{number}: not carried over: {text}" for number, text in found.remarks]
+        lost = [f"{file.name}:{number}: not carried over: {text}" for number, text in imported.remarks]
         try:
-            report = _write(found, scene, [f"From {file.name}.", *lost], file.name)
+            report = _write(imported, scene, [f"From {file.name}.", *lost], file.name)
         except (SceneError, MeshError) as err:
             refused = f"{file}: gives no scene that runs, and none is written; correct the file:"
             raise type(err)("\n".join([*lost, refused, str(err)])) from err
@@ -95,7 +95,7 @@ def _imported(file: Path, line: str | None, stem: str) -> "ImportedScene":
     return scene_of_deck(deck.read_deck(file), line)
 
 
-def _write(found: "ImportedScene", scene: Path, head: list[str], source: str) -> str:
+def _write(imported: "ImportedScene", scene: Path, head: list[str], source: str) -> str:
     """The scene and the files that it names, if it is one that runs; what `check` says of it, with the source's lines
     where messages name keys.
     """
@@ -104,15 +104,15 @@ def _write(found: "ImportedScene", scene: Path, head: list[str], source: str) ->
     from riser_soil.scene.dump import yaml_text
     from riser_soil.scene.reader import checked, with_place_in
 
-    document = found.document(source)
-    with written_together(scene.parent, [scene.name, *found.files]) as folder:
-        for name, text in found.files.items():
+    document = imported.document(source)
+    with written_together(scene.parent, [scene.name, *imported.files]) as folder:
+        for name, text in imported.files.items():
             (folder / name).write_text(text, encoding="utf-8")
         model = checked(document, folder)
         with placed_in(lambda: document):
             report = describe(model, place=partial(with_place_in, document))
         comments = "".join(f"# {each}\n" for each in head)
-        (folder / scene.name).write_text(comments + yaml_text(found.data), encoding="utf-8")
+        (folder / scene.name).write_text(comments + yaml_text(imported.data), encoding="utf-8")
     return report
 
 

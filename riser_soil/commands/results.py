@@ -31,12 +31,12 @@ def stiffness(
         from riser_soil.results.whole_file import written_whole
 
         positive("period", period)
-        found = secant_stiffness(Run(folder), arc, stage, period)
+        stiffnesses = secant_stiffness(Run(folder), arc, stage, period)
         if output is None:
-            write_csv(found, sys.stdout)
+            write_csv(stiffnesses, sys.stdout)
         else:
             with written_whole(output) as part, part.open("w", encoding="utf-8") as file:
-                write_csv(found, file)
+                write_csv(stiffnesses, file)
 
 
 def film(
@@ -192,6 +192,6 @@ def fatigue(
         folder = output or Path(f"{file.stem}-damage")
         given = read_fatigue_file(file)
         refuse_folder(folder, FILES, "an assessment", force)
-        found = assess(file, given)
-        write_folder(folder, found, plot)
-        typer.echo("\n".join([*result_lines(found), f"tables are in {folder}"]))
+        damage = assess(file, given)
+        write_folder(folder, damage, plot)
+        typer.echo("\n".join([*result_lines(damage), f"tables are in {folder}"]))

@@ -106,7 +106,7 @@ def modes(
         folder = output or Path(f"{Path(scene).stem}-modes")
         refuse_folder(folder, force)
         with handling_signals(), placed(scene, overrides):
-            found = modes_of(checked, count, stage)
-            write_folder(folder, found, plot)
+            shapes = modes_of(checked, count, stage)
+            write_folder(folder, shapes, plot)
         if rank() == 0:
-            typer.echo("\n".join([*table(found, count), f"shapes are in {folder}"]))
+            typer.echo("\n".join([*table(shapes, count), f"shapes are in {folder}"]))

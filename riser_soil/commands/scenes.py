@@ -51,10 +51,10 @@ def guessed(scene: "Scene") -> "Scene":
     """
     from riser_soil.scene.variants import at_offset, displacement
 
-    found = _hung_as_cable(scene)
-    if found.vessel is not None and rank() == 0:
-        print(displacement(found).in_words)
-    return at_offset(found)
+    hung = _hung_as_cable(scene)
+    if hung.vessel is not None and rank() == 0:
+        print(displacement(hung).in_words)
+    return at_offset(hung)
 
 
 def _hung_as_cable(scene: "Scene") -> "Scene":
@@ -66,10 +66,10 @@ def _hung_as_cable(scene: "Scene") -> "Scene":
 
     ends = hung_ends(scene)
     values = [first_value(hung) for hung in ends]
-    found = settled(ends, values)
+    placed = settled(ends, values)
     for each in zip(ends, values, strict=True) if rank() == 0 else ():
         print(f"{in_words(*each)} by the cable without bending stiffness; a run solves it on the riser itself")
-    return found
+    return placed
 
 
 def read_start(scene: str, overrides: list[str] | None) -> "Scene":
@@ -125,8 +125,8 @@ def placed_in(document: "Callable[[], Document]") -> Iterator[None]:
     except (SceneError, MeshError) as err:
         from riser_soil.scene.reader import with_doubts, with_place_in
 
-        found = document()
-        raise with_doubts(type(err)(with_place_in(found, str(err))), found) from err
+        value = document()
+        raise with_doubts(type(err)(with_place_in(value, str(err))), value) from err
     except ValueError as err:
         from pydantic import ValidationError
 

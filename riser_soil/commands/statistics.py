@@ -84,9 +84,9 @@ def statistics(
         runs, wanted = [Run(folder) for folder in folders], Wanted(duration, block, minima, confidence, segment)
         arcs = _arcs(runs, arc or [], at or [])
         places = [
-            Place(records, float(where), found)
+            Place(records, float(where), result)
             for records in (records_of(runs, name, arcs, stage, since) for name in of)
-            for where, found in zip(records.arc, statistics_of(records, wanted), strict=True)
+            for where, result in zip(records.arc, statistics_of(records, wanted), strict=True)
         ]
         levels = above or []
         lines = [*table(places, wanted), *exceedance_table(places, levels, wanted)]
@@ -118,12 +118,12 @@ def histories(
         from riser_soil.statistics.records import records_of
 
         run = Run(folder)
-        found = [records_of([run], name, _arcs([run], arc or [], at or []), stage, since) for name in of]
+        records = [records_of([run], name, _arcs([run], arc or [], at or []), stage, since) for name in of]
         if output is None:
-            write_histories(found, sys.stdout)
+            write_histories(records, sys.stdout)
         else:
             with written_whole(output) as part, part.open("w", encoding="utf-8") as file:
-                write_histories(found, file)
+                write_histories(records, file)
 
 
 def _arcs(runs: "list[Run]", arc: list[float], at: list[str]) -> list[float] | None:
@@ -132,8 +132,8 @@ def _arcs(runs: "list[Run]", arc: list[float], at: list[str]) -> list[float] | N
     wrong = [name for name in at if name not in ends]
     if wrong:
         raise ResultsError(f"--at {wrong[0]}: must be start or end; other places are given by --arc")
-    found = [*arc, *(float(runs[0].arc[ends[name]]) for name in at)]
-    return found or None
+    arcs = [*arc, *(float(runs[0].arc[ends[name]]) for name in at)]
+    return arcs or None
 
 
 def _draw(png: Path, places: "list[Place]") -> None:
@@ -145,4 +145,4 @@ def _draw(png: Path, places: "list[Place]") -> None:
     if len(places) > MOST:
         raise ResultsError(f"--plot {png}: {len(places)} places are more than {MOST} that a picture takes; give --arc")
     with written_whole(png) as part:
-        draw_statistics(part, [(place.words, place.records.units, place.found) for place in places])
+        draw_statistics(part, [(place.words, place.records.units, place.statistics) for place in places])

@@ -14,9 +14,9 @@ from riser_soil.scene.scene import Scene
 def drafted() -> dict[str, Scene]:
     """A scene of each kind that `new` has, as it comes out without wishes."""
     with tempfile.TemporaryDirectory(prefix="riser_soil-") as folder:
-        found = {}
+        drafts = {}
         for kind in KINDS:
             file = Path(folder, f"{kind}.yaml")
             file.write_text(draft(kind, Wishes(), kind), encoding="utf-8")
-            found[kind] = read_scene(file)
-        return found
+            drafts[kind] = read_scene(file)
+        return drafts

@@ -149,12 +149,12 @@ def _chosen(file: Path, history: StressHistory, arcs: tuple[float, float] | None
     """Sections in the stretch that is asked for."""
     if arcs is None:
         return np.arange(history.arc.size)
-    found = np.flatnonzero((history.arc >= arcs[0]) & (history.arc <= arcs[1]))
-    if not found.size:
+    numbers = np.flatnonzero((history.arc >= arcs[0]) & (history.arc <= arcs[1]))
+    if not numbers.size:
         reach = f"{history.arc.min():g} to {history.arc.max():g} m"
         wanted = f"{arcs[0]:g} to {arcs[1]:g} m"
         raise ResultsError(f"{file}: arcs: no node of a wall lies from {wanted}; walls lie from {reach}")
-    return found
+    return numbers
 
 
 def _case(
@@ -175,8 +175,8 @@ def _sea(run: Run) -> dict[str, float]:
     if len(trains) != 1:
         return {}
     keys = {"height": ("Hs", "height"), "period": ("Tp", "period"), "direction_deg": ("direction_deg",)}
-    found = {key: next((trains[0][name] for name in names if name in trains[0]), None) for key, names in keys.items()}
-    return {key: float(value) for key, value in found.items() if value is not None}
+    values = {key: next((trains[0][name] for name in names if name in trains[0]), None) for key, names in keys.items()}
+    return {key: float(value) for key, value in values.items() if value is not None}
 
 
 def _doubts(each: CaseDamage) -> Iterator[str]:

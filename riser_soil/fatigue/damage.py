@@ -78,10 +78,10 @@ def rainflow_ranges(history: Array, load_classes: int) -> Array:
     whole = float(np.ptp(history))
     if whole == 0.0:
         return np.empty(0)
-    found = _counted(history, load_classes)
-    if found.max(initial=0.0) < whole * (1.0 - 0.5 / load_classes):
-        found = _counted(np.append(np.roll(history, -int(history.argmax())), history.max()), load_classes)
-    return found
+    ranges = _counted(history, load_classes)
+    if ranges.max(initial=0.0) < whole * (1.0 - 0.5 / load_classes):
+        ranges = _counted(np.append(np.roll(history, -int(history.argmax())), history.max()), load_classes)
+    return ranges
 
 
 def _counted(history: Array, load_classes: int) -> Array:

@@ -55,8 +55,8 @@ def stress_history(run: Run, stage: str | None = None, skip: float = 0.0) -> Str
     since = beginning(run, number) + skip
     rows = np.flatnonzero((run["stage"] == number) & (run.time >= since * (1.0 - 1e-12)))
     if rows.size < FEWEST:
-        left = f"{rows.size} record(s) of stage {run.stage_names[number]} from {since:g} s on"
-        raise ResultsError(f"{run.folder}: {left}; record more (output.interval), or skip less")
+        source = f"{rows.size} record(s) of stage {run.stage_names[number]} from {since:g} s on"
+        raise ResultsError(f"{run.folder}: {source}; record more (output.interval), or skip less")
     sections = sections_of(run)
     T, My, p_i, p_o = (_recorded(run, name)[rows] for name in NEEDED)
     Mz = _recorded(run, IN_SPACE)[rows] if in_space(run) else np.zeros_like(My)
@@ -84,10 +84,10 @@ def in_space(run: Run) -> bool:
 def sections_of(run: Run) -> WallSections:
     """Sections of the walls, by the line types and segments of the run's scene."""
     types = {name: LineType.model_validate(given) for name, given in run.scene["line_types"].items()}
-    found = walls_of(elements_along(Riser.model_validate(run.scene["riser"]), types, Surroundings()))
-    if not found.node.size:
+    walls = walls_of(elements_along(Riser.model_validate(run.scene["riser"]), types, Surroundings()))
+    if not walls.node.size:
         raise ResultsError(f"{run.folder}: no line type has a wall, from whose stress fatigue follows; add one")
-    return found
+    return walls
 
 
 def same_sections(one: StressHistory, other: StressHistory) -> bool:

@@ -80,22 +80,22 @@ def _between(low: float, high: float) -> Iterator[float]:
     return chain((0.0, high), *repeat((low, high), CYCLES))
 
 
-def in_words(found: Memory) -> list[str]:
+def in_words(memory: Memory) -> list[str]:
     """How a soil remembers cycles in words, a line each."""
     lines = [
         f"{CYCLES} cycles of shear strain up to {HELD:g}:",
         f"{'amplitude [-]':>15} {'first [kPa]':>12} {'last [kPa]':>12} {'of the mean lost a cycle [%]':>29}",
     ]
-    for each in found.relaxation:
+    for each in memory.relaxation:
         first, last = (f"{1e-3 * each.top[n]:12.4g}" for n in (0, -1))
         lost = "-" if np.isnan(each.lost) else f"{100.0 * each.lost:.2f}"
         lines.append(f"{each.amplitude:15.4g} {first} {last} {lost:>29}")
-    first, last = found.ratchet[0], found.ratchet[-1]
-    added = f"{first:.5f} at first, {last:.5f} at last, {abs(last - found.ratchet[-2]):.5f} more by the last one"
+    first, last = memory.ratchet[0], memory.ratchet[-1]
+    added = f"{first:.5f} at first, {last:.5f} at last, {abs(last - memory.ratchet[-2]):.5f} more by the last one"
     return [*lines, f"{CYCLES} cycles of shear stress, {LOW:g} to {HIGH:g} of the largest one there: strain {added}"]
 
 
-def table_columns(found: Memory) -> dict[str, Array]:
+def table_columns(memory: Memory) -> dict[str, Array]:
     """Columns of a table by their headings, a row a cycle; the first row is the first way up."""
-    tops = {f"stress_at_{each.amplitude:.4g} [Pa]": each.top for each in found.relaxation}
-    return {"cycle [-]": np.arange(CYCLES + 1.0), **tops, "strain_of_stress_cycles [-]": found.ratchet}
+    tops = {f"stress_at_{each.amplitude:.4g} [Pa]": each.top for each in memory.relaxation}
+    return {"cycle [-]": np.arange(CYCLES + 1.0), **tops, "strain_of_stress_cycles [-]": memory.ratchet}

@@ -42,9 +42,9 @@ class MaterialCurve:
 def point_at(soil: SoilScene, depth: float) -> MaterialPoint:
     """The soil's law at a depth below the seabed [m]; SceneError where it can't be, or starts beyond its limit."""
     given, within = law_at(soil, depth)
-    found = given.wrong_within(within)
-    if found:
-        raise SceneError(f"soil.law: at a depth of {depth:g} m {found[0]}; {found[1]}, or a smaller --depth")
+    wrong = given.wrong_within(within)
+    if wrong:
+        raise SceneError(f"soil.law: at a depth of {depth:g} m {wrong[0]}; {wrong[1]}, or a smaller --depth")
     initial = initial_stress(soil, np.array([depth]))
     law = given.at_points(np.array([within]), initial)
     over = float(law.overstress(initial)[0])
@@ -77,10 +77,10 @@ def drive(point: MaterialPoint, path: MaterialPath) -> MaterialCurve:
     rows = [(strain, before, lost)]
     for row, values in enumerate(wanted):
         increment = np.where(path.stress, 0.0, values - strain)
-        increment, found = _answer(point, increment, values, path, before.history, row)
-        lost += _dissipated(point, increment, before, found)
-        strain, before = strain + increment, found
-        rows.append((strain, found, lost))
+        increment, answer = _answer(point, increment, values, path, before.history, row)
+        lost += _dissipated(point, increment, before, answer)
+        strain, before = strain + increment, answer
+        rows.append((strain, answer, lost))
     return _curve(law, rows)
 
 
@@ -91,15 +91,15 @@ def _answer(
     answer.
     """
     free: BoolArray = path.stress
-    found = point.law.update(increment[None], history, path.seconds[row])
+    answer = point.law.update(increment[None], history, path.seconds[row])
     for _ in range(MOST_ITERATIONS):
-        missing = (wanted - found.stress[0] + point.initial[0])[free]
-        if not np.abs(missing).max(initial=0.0) > CONVERGED * np.abs(found.stress).max():
-            return increment, found
-        moduli = found.tangent[0][np.ix_(free, free)]
+        missing = (wanted - answer.stress[0] + point.initial[0])[free]
+        if not np.abs(missing).max(initial=0.0) > CONVERGED * np.abs(answer.stress).max():
+            return increment, answer
+        moduli = answer.tangent[0][np.ix_(free, free)]
         increment = increment.copy()
         increment[free] += np.linalg.lstsq(moduli, missing, rcond=1e-12)[0]
-        found = point.law.update(increment[None], history, path.seconds[row])
+        answer = point.law.update(increment[None], history, path.seconds[row])
     names = ", ".join(np.array(STRESSES)[free])
     raise SolveError(
         f"{path.source}, row {row + 1}: no strain brings {names} to what is asked: the soil has no such strength, or "
@@ -118,7 +118,7 @@ def _curve(law: Formula, rows: list[tuple[Array, StressUpdate, float]]) -> Mater
     plastic = law.columns.index(PLASTIC_STRAIN) if PLASTIC_STRAIN in law.columns else None
     return MaterialCurve(
         np.array([strain for strain, _, _ in rows]) / STRAIN_FACTOR,
-        np.array([found.stress[0] for _, found, _ in rows]) / STRESS_FACTOR,
-        np.array([0.0 if plastic is None else found.history[0, plastic] for _, found, _ in rows]),
+        np.array([answer.stress[0] for _, answer, _ in rows]) / STRESS_FACTOR,
+        np.array([0.0 if plastic is None else answer.history[0, plastic] for _, answer, _ in rows]),
         np.array([lost for _, _, lost in rows]),
     )

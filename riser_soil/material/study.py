@@ -34,19 +34,19 @@ def study(scene: Scene, folder: Path, path: Path | None = None, depth: float | N
     soil = _soil_of(scene)
     z = _depth(soil, depth)
     _refuse(folder, force)
-    taken = read_path(path) if path is not None else shear_cycles()
+    strain_path = read_path(path) if path is not None else shear_cycles()
     point = point_at(soil, z)
-    curve = drive(point, taken)
-    k = taken.driven
-    given = curve.stress if taken.stress[k] else curve.strain
+    curve = drive(point, strain_path)
+    k = strain_path.driven
+    given = curve.stress if strain_path.stress[k] else curve.strain
     cycles = closed_cycles(given[:, k], curve.strain[:, k], curve.stress[:, k])
     kind = law_at(soil, z)[0].kind
-    heading = f"{SIGNED}{kind} at a depth of {z:g} m, {taken.source}; {STRAINS[k]} and {STRESSES[k]} are drawn"
+    heading = f"{SIGNED}{kind} at a depth of {z:g} m, {strain_path.source}; {STRAINS[k]} and {STRESSES[k]} are drawn"
     remembered = memory(point)
     tables = {CURVE: _curve_columns(curve), CYCLES: _cycle_columns(cycles), MEMORY: table_columns(remembered)}
     _leave(folder, heading, tables)
     return "\n".join(
-        [*_summary_lines(soil, z, taken, curve, cycles), *in_words(remembered), f"written: {_LEFT} in {folder}"]
+        [*_summary_lines(soil, z, strain_path, curve, cycles), *in_words(remembered), f"written: {_LEFT} in {folder}"]
     )
 
 

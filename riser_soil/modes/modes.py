@@ -127,8 +127,8 @@ class Modes(NamedTuple):
     @property
     def _turned(self) -> Array:
         """Sizes of what bodies turn (nb, n) [rad/m]."""
-        found = [np.linalg.norm(own.rotation, axis=1) for own in self.bodies.values()]
-        return np.array(found).reshape(-1, len(self.frequency))
+        turns = [np.linalg.norm(own.rotation, axis=1) for own in self.bodies.values()]
+        return np.array(turns).reshape(-1, len(self.frequency))
 
 
 def modes_of(scene: Scene, count: int = 10, stage: str | None = None) -> Modes:
@@ -142,26 +142,26 @@ def modes_of(scene: Scene, count: int = 10, stage: str | None = None) -> Modes:
     """
     rest = at_rest(scene, stage)
     least = NEAR_ZERO * GRAVITY / max(float(own.line.arc[-1]) for own in rest.assembly.lines.values())
-    found = lowest(rest.stiffness, rest.mass, count, -least)
-    _require_sound(found, least)
-    return _seen(rest, np.where(found.squares > least, found.squares, 0.0), found)
+    pairs = lowest(rest.stiffness, rest.mass, count, -least)
+    _require_sound(pairs, least)
+    return _seen(rest, np.where(pairs.squares > least, pairs.squares, 0.0), pairs)
 
 
-def _require_sound(found: Eigenpairs, least: float) -> None:
-    if found.squares.min() < -least:
+def _require_sound(pairs: Eigenpairs, least: float) -> None:
+    if pairs.squares.min() < -least:
         raise SolveError(
-            f"the riser at rest is unstable: the square of an angular frequency is {found.squares.min():.4g} rad2/s2; "
+            f"the riser at rest is unstable: the square of an angular frequency is {pairs.squares.min():.4g} rad2/s2; "
             "check the static load step, refine the riser or hold its ends"
         )
-    if found.asymmetry > MOST_ASYMMETRY:
+    if pairs.asymmetry > MOST_ASYMMETRY:
         raise SolveError(
             f"the tangent at rest is not symmetric, as with drag in a current or moments in space: frequencies would "
-            f"change by {found.asymmetry:.2g} of them, more than {MOST_ASYMMETRY:g}; leave out such loads"
+            f"change by {pairs.asymmetry:.2g} of them, more than {MOST_ASYMMETRY:g}; leave out such loads"
         )
 
 
-def _seen(rest: RiserAtRest, squares: Array, found: Eigenpairs) -> Modes:
-    state, moved = State.at_rest(rest.stage.end, rest.assembly.size), [rest.whole(mode) for mode in found.modes]
+def _seen(rest: RiserAtRest, squares: Array, pairs: Eigenpairs) -> Modes:
+    state, moved = State.at_rest(rest.stage.end, rest.assembly.size), [rest.whole(mode) for mode in pairs.modes]
     each = {name: own.line for name, own in rest.assembly.lines.items()}
     of_lines = {name: _line_shapes(line, state, moved) for name, line in each.items()}
     of_bodies = {body.name: _body_shapes(body, moved) for body in rest.bodies}
@@ -173,9 +173,9 @@ def _seen(rest: RiserAtRest, squares: Array, found: Eigenpairs) -> Modes:
     scale = _scale(np.hstack([*axes, *(arm[:, None] for arm in arms)]), np.hstack(surfaces), UNSEEN * least)
     lines = {name: own.scaled(scale) for name, own in of_lines.items()}
     bodies = {name: own.scaled(scale) for name, own in of_bodies.items()}
-    seen = UNSEEN**2 * sum(line.arc[-1] for line in each.values())
-    share = _shares(np.sum([_squared(line, state, lines[name]) for name, line in each.items()], axis=0), seen)
-    return Modes(np.sqrt(squares) / (2.0 * np.pi), share, found.asymmetry, rest.stage.name, lines, bodies)
+    visible = UNSEEN**2 * sum(line.arc[-1] for line in each.values())
+    share = _shares(np.sum([_squared(line, state, lines[name]) for name, line in each.items()], axis=0), visible)
+    return Modes(np.sqrt(squares) / (2.0 * np.pi), share, pairs.asymmetry, rest.stage.name, lines, bodies)
 
 
 def _line_shapes(line: Line, state: State, moved: Sequence[Array]) -> LineShapes:
@@ -293,18 +293,18 @@ def stages_up_to(scene: Scene, name: str | None) -> list[Stage]:
     names = [stage.name for stage in scene.stages]
     if name is not None and name not in names:
         raise SceneError(f'--stage "{name}": the scene has no such stage; it has {", ".join(names)}')
-    found: list[Stage] = []
+    stages: list[Stage] = []
     for stage in scene.stages:
         if isinstance(stage, DynamicStage):
             break
-        found.append(stage)
+        stages.append(stage)
         if stage.name == name:
-            return found
+            return stages
     if name is not None:
         raise SceneError(f'--stage "{name}": a riser at rest is that after static stages alone; name one of the first')
-    if not found:
+    if not stages:
         raise SceneError("stages: modes are those of a riser at rest; begin with a static stage")
-    return found
+    return stages
 
 
 def _linearised(assembly: Assembly, stage: Stage) -> RiserAtRest:
@@ -346,6 +346,6 @@ def _of_line(own: LineAssembly) -> list[Part]:
 def _assembled(system: System, state: State, weights: Weights, parts: list[Part]) -> csr_array:
     system.assemble(state, weights, parts)
     indptr, indices, values = (each.copy() for each in system.matrix.mat.getValuesCSR())
-    found = csr_array((values, indices, indptr), shape=(system.numbering.free,) * 2)
-    found.eliminate_zeros()
-    return found
+    matrix = csr_array((values, indices, indptr), shape=(system.numbering.free,) * 2)
+    matrix.eliminate_zeros()
+    return matrix

@@ -49,8 +49,8 @@ def table(modes: Modes, asked: int) -> list[str]:
 def write_folder(folder: Path, modes: Modes, plot: bool) -> None:
     """All files together, none of them by halves."""
     with written_together(folder, FILES if plot else (NUMBERS,)) as made:
-        for group, found in datasets(modes).items():
-            found.to_netcdf(made / NUMBERS, mode="w" if group == "/" else "a", group=group, engine="h5netcdf")
+        for group, dataset in datasets(modes).items():
+            dataset.to_netcdf(made / NUMBERS, mode="w" if group == "/" else "a", group=group, engine="h5netcdf")
         if plot:
             from riser_soil.plots.mode_shapes import draw_modes
 
@@ -65,14 +65,14 @@ def titles(modes: Modes) -> list[str]:
 
 def datasets(modes: Modes) -> dict[str, xarray.Dataset]:
     """Datasets of modes.nc by group, "/" the whole: units, signs and places with each variable."""
-    found = {"/": _of_all(modes)}
+    groups = {"/": _of_all(modes)}
     for name, own in modes.lines.items():
-        found[name or "/"] = _of_line(own) if name else found["/"].merge(_of_line(own))
-    return found | {f"bodies/{name}": _of_body(own) for name, own in modes.bodies.items()}
+        groups[name or "/"] = _of_line(own) if name else groups["/"].merge(_of_line(own))
+    return groups | {f"bodies/{name}": _of_body(own) for name, own in modes.bodies.items()}
 
 
 def _of_all(modes: Modes) -> xarray.Dataset:
-    found = xarray.Dataset(
+    dataset = xarray.Dataset(
         {
             "frequency": _named(("mode",), modes.frequency, "Hz", "natural frequency, without damping"),
             "period": _named(("mode",), modes.period, "s", "natural period"),
@@ -84,8 +84,8 @@ def _of_all(modes: Modes) -> xarray.Dataset:
         },
         {"mode": np.arange(1, len(modes.frequency) + 1), "direction": list(DIRECTIONS)},
     )  # fmt: skip
-    found.attrs = {"stage": modes.stage, "asymmetry": modes.asymmetry, "Conventions": "CF-1.11"}
-    return found
+    dataset.attrs = {"stage": modes.stage, "asymmetry": modes.asymmetry, "Conventions": "CF-1.11"}
+    return dataset
 
 
 SHAPE = "displacement of the {} over the mode's largest displacement; global axes, z up"

@@ -59,15 +59,15 @@ def all_chains(deck: Deck, loaded: Container[str]) -> list[Chain]:
     loaded: names of the nodes at which a force acts. There, or where something sits, cables have a kink; and between
     lines that bend MoorDyn's points are hinges.
     """
-    every, found = pieces_of(deck), list[Chain]()
+    every, chains = pieces_of(deck), list[Chain]()
 
     def kinked(node: Node) -> bool:
         return node.name in loaded or bool(held_at(deck, node)) or is_hinge(deck, node, _at(every, node))
 
     for piece in every:
-        if not any(piece in chain.pieces for chain in found):
-            found.append(_through(deck, every, piece, kinked))
-    return found
+        if not any(piece in chain.pieces for chain in chains):
+            chains.append(_through(deck, every, piece, kinked))
+    return chains
 
 
 def is_hinge(deck: Deck, node: Node, pieces: list[Piece]) -> bool:

@@ -57,11 +57,11 @@ class Deck:
 
     def numbers(self, row: DeckRow, column: str, counts: tuple[int, ...]) -> list[float]:
         """The numbers of a word such as 1.0|2.0|3.0; SceneError where there are not as many as one of the counts."""
-        found = [self.parsed(row, word, column) for word in row[column].split("|")]
-        if len(found) not in counts:
+        values = [self.parsed(row, word, column) for word in row[column].split("|")]
+        if len(values) not in counts:
             allowed = " or ".join(map(str, counts))
-            raise self.error(row.line, f"{column} is {row[column]!r}, {len(found)} numbers; give {allowed}")
-        return found
+            raise self.error(row.line, f"{column} is {row[column]!r}, {len(values)} numbers; give {allowed}")
+        return values
 
     def parsed(self, row: DeckRow, word: str, what: str) -> float:
         """A word as a finite number; SceneError where it is none."""
@@ -163,12 +163,12 @@ def _read_table(deck: Deck, section: str, block: _Block) -> None:
     line = block.rows[0][0]
     if section == "line types" and OF_MAP in map(plain, headings):
         raise deck.error(line, f"{' '.join(headings)} are headings of MAP++; give a deck of MoorDyn")
-    found = columns_of(section, headings)
-    if found is None:
+    columns = columns_of(section, headings)
+    if columns is None:
         order = " ".join(SECTIONS[section].orders[0])
         problem = f"headings {' '.join(headings)} are not those of {section.upper()}"
         raise deck.error(line, f"{problem}; correct them: MoorDyn has {order}")
-    names, remarks = found
+    names, remarks = columns
     deck.remarks.extend((line, remark) for remark in remarks)
     if [name for name in names if name] not in [[*order[: len(names)]] for order in SECTIONS[section].orders]:
         deck.remarks.append((line, f"the columns of {section.upper()} are in an order that no MoorDyn has"))

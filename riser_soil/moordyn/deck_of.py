@@ -155,9 +155,9 @@ def _between(first: Vector | None, last: Vector | None, arc: float, length: floa
     if first is not None and last is not None:
         x, y, z = (a + (b - a) * arc / length for a, b in zip(first, last, strict=True))
         return x, y, z
-    held = first or last
-    assert held is not None
-    return held[0], held[1], held[2] - (arc if first else length - arc)
+    end = first or last
+    assert end is not None
+    return end[0], end[1], end[2] - (arc if first else length - arc)
 
 
 def _attached(scene: Scene, arc: float) -> list[Attachment]:
@@ -174,19 +174,19 @@ def _sum(attached: list[Attachment]) -> list[float]:
 
 def _options(scene: Scene, level: float) -> dict[str, float]:
     assert scene.water is not None
-    found = {"g": scene.gravity, "rho": scene.water.density}
+    options = {"g": scene.gravity, "rho": scene.water.density}
     if isinstance(bed := scene.seabed, SpringSeabed):
         diameter = scene.line_types[scene.line.segments[0].line_type].outer_diameter or 0.0
         axis = scene.seabed_level + (0.5 * diameter if bed.contact_at == "outer" else 0.0)
-        found |= {"WtrDpth": level - axis, "kBot": bed.stiffness / diameter, "cBot": 0.0}
+        options |= {"WtrDpth": level - axis, "kBot": bed.stiffness / diameter, "cBot": 0.0}
     elif scene.has_ground:
         raise SceneError("seabed: a deck has no other ground than kind spring; give its stiffness [N/m2]")
     friction = scene.contact.friction if scene.contact else None
     if friction is not None and friction.axial is not None:
         across = friction.axial if friction.lateral is None else friction.lateral
         alike = {"FrictionCoefficient": across}
-        found |= alike if across == friction.axial else {"mu_kA": friction.axial, "mu_kT": across}
-    return found
+        options |= alike if across == friction.axial else {"mu_kA": friction.axial, "mu_kT": across}
+    return options
 
 
 def left_out(document: Document, scene: Scene) -> Iterator[Remark]:

@@ -62,12 +62,12 @@ class Cable:
             return self.turned.pulls(FLIP * start, FLIP * end) * FLIP
         ends = np.array([start, end])
         ends[:, 2] = np.maximum(ends[:, 2], self.level)
-        found = catenary(
+        cable = catenary(
             self.arc, ends[0], ends[1], self.weight, self.EA, self.level, points=self.points, bars=BARS,
             near=self.near[0] if self.near else None,
         )  # fmt: skip
-        self.near[:] = [found]
-        return np.array([found.tension[0] * found.curve.tangent[0, 0], -found.tension[-1] * found.curve.tangent[-1, 1]])
+        self.near[:] = [cable]
+        return np.array([cable.tension[0] * cable.curve.tangent[0, 0], -cable.tension[-1] * cable.curve.tangent[-1, 1]])
 
 
 def cable_of(deck: Deck, chain: Chain, rho: float, g: float, level: float | None) -> Cable:
@@ -78,7 +78,7 @@ def cable_of(deck: Deck, chain: Chain, rho: float, g: float, level: float | None
     EA = [deck.parsed(row, row["EA"].split("|")[0], "EA") if "EA" in row else np.inf for row in rows]
     stiffest = max((value for value in EA if np.isfinite(value)), default=1e9)
     within = [(arc[n], held_at(deck, chain.nodes[n])) for n in range(1, len(chain.pieces))]
-    points = [(s, g * (held.get("mass", 0.0) - rho * held.get("volume", 0.0))) for s, held in within]
+    points = [(s, g * (carried.get("mass", 0.0) - rho * carried.get("volume", 0.0))) for s, carried in within]
     return Cable(
         arc,
         g * np.array([net_weight(deck, piece, rho) for piece in chain.pieces]),
@@ -111,12 +111,12 @@ def at_rest(cables: Sequence[Cable], places: dict[str, Vector], loads: dict[str,
 
 def _forces(cables: Iterable[Cable], at: dict[str, Array], loads: dict[str, Array], free: list[str]) -> Array:
     """Forces (3 n,) on the free nodes."""
-    found = {name: loads[name].astype(float) for name in free}
+    forces = {name: loads[name].astype(float) for name in free}
     for cable in cables:
         for name, pull in zip(cable.ends, cable.pulls(at[cable.ends[0]], at[cable.ends[1]]), strict=True):
-            if name in found:
-                found[name] = found[name] + pull
-    return np.concatenate([found[name] for name in free])
+            if name in forces:
+                forces[name] = forces[name] + pull
+    return np.concatenate([forces[name] for name in free])
 
 
 def _balance(

@@ -26,20 +26,20 @@ class SteadyForce:
 
 def forces_of(deck: Deck) -> tuple[dict[str, list[SteadyForce]], list[Remark]]:
     """Forces by the name of the node that they act on; remarks on what damps, and on axes that turn."""
-    found, remarks = dict[str, list[SteadyForce]](), list[Remark]()
+    by_node, remarks = dict[str, list[SteadyForce]](), list[Remark]()
     for row in deck.of("points"):
         if "FX" in row:
             force = _vector([deck.number(row, column) for column in ("FX", "FY", "FZ")])
-            found.setdefault(node_at(deck, row, "points").name, []).append(SteadyForce(force, row.line))
+            by_node.setdefault(node_at(deck, row, "points").name, []).append(SteadyForce(force, row.line))
     for row in deck.of("external loads"):
         name = _object(deck, row)
-        found.setdefault(name, []).append(SteadyForce(_vector(deck.numbers(row, "Fext", (1, 3))), row.line))
+        by_node.setdefault(name, []).append(SteadyForce(_vector(deck.numbers(row, "Fext", (1, 3))), row.line))
         for column in ("Blin", "Bquad"):
             if any(as_number(word) != 0.0 for word in row[column].split("|")):
                 remarks.append((row.line, f"{column} {row[column]} of {row['Object']}: damping"))
         if row.cells.get("CSys", "G").upper() == "L":
             remarks.append((row.line, f"CSys L of {row['Object']}: the force turns with it there, and not here"))
-    kept = {name: [each for each in forces if any(each.force)] for name, forces in found.items()}
+    kept = {name: [each for each in forces if any(each.force)] for name, forces in by_node.items()}
     return {name: forces for name, forces in kept.items() if forces}, remarks
 
 

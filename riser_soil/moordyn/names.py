@@ -248,11 +248,11 @@ def option_of(word: str) -> str | None:
 
 def lost_option(word: str) -> tuple[float | None, str] | None:
     """What an option that a scene lacks does, with its value without effect; None where it is none of them."""
-    return next((found for words, found in LOST.items() if word.lower() in words), None)
+    return next((reason for words, reason in LOST.items() if word.lower() in words), None)
 
 
 def split(word: str) -> tuple[str, str, str]:
     """A word's letters, number and letters, in capitals: Body1Pinned gives BODY, 1, PINNED; R2a gives R, 2, A."""
-    found = re.match(r"([A-Z]*)(\d*)([A-Z]*)", re.sub(r"[^A-Z0-9]", "", word.upper()))
-    assert found is not None, "all its parts may be empty"
-    return found.group(1), found.group(2), found.group(3)
+    match = re.match(r"([A-Z]*)(\d*)([A-Z]*)", re.sub(r"[^A-Z0-9]", "", word.upper()))
+    assert match is not None, "all its parts may be empty"
+    return match.group(1), match.group(2), match.group(3)

@@ -42,9 +42,9 @@ def riser_of(
         if 0 < n < len(chain.pieces) and is_hinge(deck, node, [*chain.pieces[n - 1 : n + 1]]):
             hinge = f"{node.name} is a hinge between lines that bend; bending goes on here"
             riser.remarks.append((node.row.line, hinge))
-        if held := held_at(deck, node):
+        if properties := held_at(deck, node):
             riser.origins[("attachments", len(attachments))] = node.row.line
-            attachments.append({"at": arc} | held)
+            attachments.append({"at": arc} | properties)
         at = {0: "start", len(chain.pieces): "end"}.get(n, arc)
         riser.loads += [{"at": at} | each.load for each in forces.get(node.name, ())]
     if attachments:
@@ -87,27 +87,27 @@ def _about_axes(deck: Deck, node: Node) -> list[Remark]:
 
 def about_held(deck: Deck, node: Node, line: int) -> list[Remark]:
     """What the scene does not have of a node that holds an end; line: of the deck, where it has the end."""
-    found = list[Remark]()
+    remarks = list[Remark]()
     if node.section == "rods":
-        found.append((line, f"the line is clamped to {node.name}; its end is free to turn here"))
+        remarks.append((line, f"the line is clamped to {node.name}; its end is free to turn here"))
     if is_driven(deck, node):
-        found.append((node.row.line, f"the motion of {node.name}, which comes from outside: the end stays where it is"))
+        remarks.append((node.row.line, f"the motion of {node.name}, which comes from outside: the end is fixed"))
     elif free_body(deck, node) is not None:
-        found.append((node.row.line, f"{node.name} is on a free body; the end stays where it is: --line all has both"))
+        remarks.append((node.row.line, f"{node.name} is on a free body; the end is fixed: --line all has both"))
     own = [column for column in COLUMNS[:3] if node.section == "points" and as_number(node.row[column]) != 0.0]
     if own:
-        found.append((node.row.line, f"{', '.join(own)} of {node.name}, which is held"))
-    return found
+        remarks.append((node.row.line, f"{', '.join(own)} of {node.name}, which is held"))
+    return remarks
 
 
-def free_shape(deck: Deck, chain: Chain, held: Vector, rho: float, level: float | None) -> list[list[float]]:
+def free_shape(deck: Deck, chain: Chain, fixed: Vector, rho: float, level: float | None) -> list[list[float]]:
     """Points of a first shape from the held end of a chain on: down, or up where it floats, to the seabed or the
     surface, and along it to the side where the deck has the free end.
 
     rho: density of the water [kg/m3]. level: height of the seabed [m], None where there is none.
     """
     length = math.fsum(length_of(deck, piece) for piece in chain.pieces)
-    x, y, z = held
+    x, y, z = fixed
     floats = weighs(deck, chain, rho) < 0.0
     room = max(0.0, -z) if floats else math.inf if level is None else max(0.0, z - level)
     upright = min(length, room)
@@ -126,6 +126,6 @@ def weighs(deck: Deck, chain: Chain, rho: float) -> float:
     total = math.fsum(length_of(deck, piece) * net_weight(deck, piece, rho) for piece in chain.pieces)
     for node in chain.nodes:
         if is_free(deck, node):
-            held = held_at(deck, node)
-            total += held.get("mass", 0.0) - rho * held.get("volume", 0.0)
+            properties = held_at(deck, node)
+            total += properties.get("mass", 0.0) - rho * properties.get("volume", 0.0)
     return total

@@ -76,8 +76,8 @@ def _hold(deck: Deck, chain: Chain, riser: ImportedRiser, options: Options, leve
         riser.data[key] = {"position": [*place(deck, node, level)]}
         riser.remarks += about_held(deck, node, row.line)
     if "free" in (riser.data["start"], riser.data["end"]):
-        held = next(place(deck, node, level) for node in chain.ends if not is_free(deck, node))
-        points = free_shape(deck, chain, held, options["rho"], level)
+        fixed = next(place(deck, node, level) for node in chain.ends if not is_free(deck, node))
+        points = free_shape(deck, chain, fixed, options["rho"], level)
         riser.data["initial"] = {"points": points[::-1] if riser.data["start"] == "free" else points}
 
 

@@ -33,7 +33,7 @@ class Options:
 
 def options_of(deck: Deck) -> tuple[Options, list[Remark]]:
     """The options, and a remark on each that is not carried over, but for those that can't change an answer."""
-    found, remarks = Options(dict(DEFAULTS), {}), list[Remark]()
+    options, remarks = Options(dict(DEFAULTS), {}), list[Remark]()
     for row in deck.of("options"):
         _refuse_swapped(deck, row)
         if len(row.words) < 2:
@@ -43,16 +43,16 @@ def options_of(deck: Deck) -> tuple[Options, list[Remark]]:
         elif name == "WtrDpth" and as_number(row.words[0]) is None:
             remarks.append((row.line, f"{row.words[1]} {row.words[0]}: depths from a file; the seabed is level here"))
         else:
-            if name in found.lines:
-                again = f"{row.words[1]} {row.words[0]} counts, and not the value of line {found.lines[name]}"
+            if name in options.lines:
+                again = f"{row.words[1]} {row.words[0]} counts, and not the value of line {options.lines[name]}"
                 remarks.append((row.line, again))
-            found.values[name] = deck.parsed(row, row.words[0], row.words[1])
-            if found.values[name] < 0.0:
+            options.values[name] = deck.parsed(row, row.words[0], row.words[1])
+            if options.values[name] < 0.0:
                 raise deck.error(row.line, f"{row.words[1]} is {row.words[0]}, less than 0; give its size")
-            found.lines[name] = row.line
-    if found["g"] == 0.0:
-        raise deck.error(found.lines["g"], "g is 0: without gravity no line hangs; give 9.81")
-    return found, remarks
+            options.lines[name] = row.line
+    if options["g"] == 0.0:
+        raise deck.error(options.lines["g"], "g is 0: without gravity no line hangs; give 9.81")
+    return options, remarks
 
 
 def _refuse_swapped(deck: Deck, row: DeckRow) -> None:

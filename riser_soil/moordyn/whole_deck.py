@@ -80,11 +80,11 @@ Ends = dict[str, tuple[Node, list[tuple[Chain, str]]]]
 
 
 def _ends_by_node(chains: list[Chain]) -> Ends:
-    found: Ends = {}
+    ends: Ends = {}
     for chain in chains:
         for key, node in zip(("start", "end"), chain.ends, strict=True):
-            found.setdefault(node.name, (node, []))[1].append((chain, key))
-    return found
+            ends.setdefault(node.name, (node, []))[1].append((chain, key))
+    return ends
 
 
 def _upward(deck: Deck, chain: Chain, options: Options) -> Chain:
@@ -110,10 +110,10 @@ def _riser(
             riser.remarks += about_held(deck, node, row.line)
     loose = [node for node in chain.ends if is_free(deck, node) and not _is_shared(deck, *ends[node.name])]
     if loose:
-        held = [node for node in chain.ends if node not in loose]
-        if not held:
+        fixed = [node for node in chain.ends if node not in loose]
+        if not fixed:
             raise deck.error(chain.pieces[0].row.line, "no end of it is held or joined; fix or couple one of them")
-        points = free_shape(deck, chain, places[held[0].name], options["rho"], level)
+        points = free_shape(deck, chain, places[fixed[0].name], options["rho"], level)
         riser.data["initial"] = {"points": points[::-1] if loose[0] == chain.ends[0] else points}
     return riser
 
@@ -127,20 +127,20 @@ def _places(
     loads, g, rho = dict[str, Array](), options["g"], options["rho"]
     for name, (node, at_it) in ends.items():
         if is_free(deck, node) and _is_shared(deck, node, at_it):
-            held = held_at(deck, node)
-            weight = g * (held.get("mass", 0.0) - rho * held.get("volume", 0.0))
+            properties = held_at(deck, node)
+            weight = g * (properties.get("mass", 0.0) - rho * properties.get("volume", 0.0))
             loads[name] = np.sum([[0.0, 0.0, -weight], *(each.force for each in forces.get(name, ()))], axis=0)
     if not loads:
         return places, []
     touched = [chain for chain in chains if loads.keys() & {node.name for node in chain.ends}]
     joined = [chain for chain in touched if all(len(ends[node.name][1]) > 1 or not is_free(deck, node)
                                                 for node in chain.ends)]  # fmt: skip
-    found = at_rest([cable_of(deck, chain, rho, g, level) for chain in joined], places, loads)
-    if found is None:
+    positions = at_rest([cable_of(deck, chain, rho, g, level) for chain in joined], places, loads)
+    if positions is None:
         rows = {ends[name][0].row.line for name in loads}
         remark = "its place at rest is not found; the search begins where the deck has it"
         return places, [(line, remark) for line in rows]
-    return places | found, []
+    return places | positions, []
 
 
 def _is_shared(deck: Deck, node: Node, at_it: list[tuple[Chain, str]]) -> bool:
@@ -189,28 +189,28 @@ def _bodies(
     deck: Deck, ends: Ends, rho: float, places: dict[str, Vector]
 ) -> tuple[dict[str, Any], list[Remark], dict[Path, int]]:
     """Free nodes that lines share and that have something of their own, and free bodies."""
-    found, remarks, origins = dict[str, Any](), list[Remark](), dict[Path, int]()
+    bodies, remarks, origins = dict[str, Any](), list[Remark](), dict[Path, int]()
     for node, at_it in ends.values():
-        held = held_at(deck, node)
-        if not is_free(deck, node) or not _is_shared(deck, node, at_it) or not held:
+        properties = held_at(deck, node)
+        if not is_free(deck, node) or not _is_shared(deck, node, at_it) or not properties:
             continue
         name = _node_body(node)
-        remarks += [(node.row.line, about) for about in _with_mass(held, node.name, rho)]
-        found[name] = {"kind": "point", "position": [*places[node.name]]} | held
+        remarks += [(node.row.line, about) for about in _with_mass(properties, node.name, rho)]
+        bodies[name] = {"kind": "point", "position": [*places[node.name]]} | properties
         origins[("bodies", name)] = node.row.line
     for row in deck.of("bodies"):
         if kind(deck, "bodies", row)[0] == FREE and not is_point(deck, row):
-            found[_body_name(row)], about = _rigid(deck, row, rho)
+            bodies[_body_name(row)], about = _rigid(deck, row, rho)
             remarks += [(row.line, each) for each in about]
             origins[("bodies", _body_name(row))] = row.line
-    return found, remarks, origins
+    return bodies, remarks, origins
 
 
-def _with_mass(held: dict[str, float], name: str, rho: float) -> Iterator[str]:
+def _with_mass(properties: dict[str, float], name: str, rho: float) -> Iterator[str]:
     """Give what has none the least mass."""
-    if "mass" not in held:
-        held["mass"] = LEAST_MASS * rho * held.get("volume", 0.0) or 1.0
-        yield f"{name} has no mass; it gets {held['mass']:g} kg"
+    if "mass" not in properties:
+        properties["mass"] = LEAST_MASS * rho * properties.get("volume", 0.0) or 1.0
+        yield f"{name} has no mass; it gets {properties['mass']:g} kg"
 
 
 def _rigid(deck: Deck, row: DeckRow, rho: float) -> tuple[dict[str, Any], list[str]]:

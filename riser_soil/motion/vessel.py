@@ -35,20 +35,20 @@ class VesselAttachment:
     """Position of an end on its vessel: its mean, and where it was found as the vessel began to move it.
 
     mean: (3,) the end while the vessel is at rest [m]. reference: (3,) the point that the response belongs to, then
-    [m]. found: (6,) the end's displacement from there [m] and rotation vector [rad] as the vessel began to move: not
+    [m]. offset: (6,) the end's displacement from there [m] and rotation vector [rad] as the vessel began to move: not
     zero where the vessel moves again after a rest.
     """
 
     mean: Array
     reference: Array
-    found: Array
+    offset: Array
 
 
 @dataclass(frozen=True, eq=False)
 class VesselMotion:
     """Displacement from the mean and rotation vector (6,) of an end on a vessel, and their derivatives.
 
-    r response + (1 - r) found, r being a smooth step of ramp [s]. Linear, as RAOs are: the response of the end is
+    r response + (1 - r) offset, r being a smooth step of ramp [s]. Linear, as RAOs are: the response of the end is
     s + theta x arm, the arm being that of the vessel at rest. clock: what the waves' clock shows as the stage begins
     [s]. since: how long the vessel has been moving then [s].
     """
@@ -62,8 +62,8 @@ class VesselMotion:
     def __call__(self, t: float) -> Kinematics:
         response = self.response(self.clock + t)
         x, v, a = (_carried(values, self.attachment.mean - self.attachment.reference) for values in response)
-        x, v, a = ramped(self.since + t, self.ramp, x - self.attachment.found, v, a)
-        return x + self.attachment.found, v, a
+        x, v, a = ramped(self.since + t, self.ramp, x - self.attachment.offset, v, a)
+        return x + self.attachment.offset, v, a
 
 
 def _carried(values: Array, arm: Array) -> Array:
@@ -88,10 +88,10 @@ class RaoTable:
         """
         first, last, share = self._between(direction)
         by_direction = (1.0 - share)[:, None, None] * self.response[first] + share[:, None, None] * self.response[last]
-        found = np.empty((w.size, self.response.shape[2]), dtype=complex)
+        response = np.empty((w.size, self.response.shape[2]), dtype=complex)
         for n, table in enumerate(by_direction):
-            found[n] = [np.interp(w[n], self.frequency, column) for column in table.T]
-        return found
+            response[n] = [np.interp(w[n], self.frequency, column) for column in table.T]
+        return response
 
     def beyond(self, w: Array) -> tuple[BoolArray, BoolArray]:
         """Which waves lie below and above the table's frequencies, but for round-off (n,)."""

@@ -43,13 +43,13 @@ class DataFile:
 
     def section(self, name: str) -> Item:
         """A section that is one object, as Environment; empty where there is none."""
-        key, found = self._found(name)
-        return Item(self, key, _by_name((key,), found if isinstance(found, dict) else {}))
+        key, value = self._found(name)
+        return Item(self, key, _by_name((key,), value if isinstance(value, dict) else {}))
 
     def objects(self, section: str) -> list[Item]:
         """Objects of a section that is a list of them, as Lines."""
-        key, found = self._found(section)
-        return _items(self, (key,), found)
+        key, value = self._found(section)
+        return _items(self, (key,), value)
 
     def find(self, section: str, name: str) -> Item | None:
         """The object of this name in a section; None where there is none."""
@@ -57,11 +57,11 @@ class DataFile:
 
     def named(self, section: str, name: str, asking: Item, key: str) -> Item | None:
         """The object of this name, for which another one asks by a key; refused where there is none."""
-        found = self.find(section, name)
-        if found is None:
+        item = self.find(section, name)
+        if item is None:
             known = ", ".join(each.title for each in self.objects(section)) or "none"
             asking.refuse(key, f"{name} is not among the {section} ({known}); correct the name")
-        return found
+        return item
 
     def end_if_refused(self, remarks: list[Remark]) -> None:
         """SceneError with the remarks and all that was refused, a line for each, if anything was."""
@@ -184,13 +184,13 @@ class Item:
         if value is None and default is not None:
             return default
         try:
-            found = math.nan if value is None else float(value)
+            number = math.nan if value is None else float(value)
         except (TypeError, ValueError):
-            found = math.nan
-        if math.isnan(found):
+            number = math.nan
+        if math.isnan(number):
             shown = "missing" if value is None else f"{value!r}, not a number"
             return self.refuse(key, f"is {shown}; correct it")
-        return found
+        return number
 
 
 def read_data(file: Path) -> DataFile:
@@ -240,20 +240,20 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def _by_name(place: Keys, found: Mapping[str, Any]) -> dict[str, tuple[Keys, Any]]:
-    return {folded(key): ((*place, key), value) for key, value in found.items()}
+def _by_name(place: Keys, values: Mapping[str, Any]) -> dict[str, tuple[Keys, Any]]:
+    return {folded(key): ((*place, key), value) for key, value in values.items()}
 
 
-def _items(file: DataFile, place: Keys, found: Any) -> list[Item]:
-    return list(_each(file, place, found)) if isinstance(found, list) else []
+def _items(file: DataFile, place: Keys, value: Any) -> list[Item]:
+    return list(_each(file, place, value)) if isinstance(value, list) else []
 
 
-def _each(file: DataFile, place: Keys, found: list[Any]) -> Iterator[Item]:
-    for n, each in enumerate(found):
+def _each(file: DataFile, place: Keys, values: list[Any]) -> Iterator[Item]:
+    for n, each in enumerate(values):
         if isinstance(each, dict):
             yield Item(file, f"{place[-1]} {name_of(each) or n + 1}", _by_name((*place, n), each))
 
 
-def name_of(found: Mapping[str, Any]) -> str:
+def name_of(values: Mapping[str, Any]) -> str:
     """The name that an object has among its values."""
-    return next((str(value) for key, value in found.items() if folded(key) == "name" and value is not None), "")
+    return next((str(value) for key, value in values.items() if folded(key) == "name" and value is not None), "")

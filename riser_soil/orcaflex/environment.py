@@ -38,14 +38,14 @@ def water_depth(environment: Item) -> float:
 def water(environment: Item, by_reynolds: bool) -> dict[str, Any]:
     """The scene's water without waves. by_reynolds: whether a line type's drag goes by Reynolds's number."""
     current = _current(environment)
-    found: dict[str, Any] = {
+    data: dict[str, Any] = {
         "density": environment.number("Density") * MASS,
         "surface_level": surface_level(environment),
         "depth": water_depth(environment),
     }
     if by_reynolds:
-        found |= _viscosity(environment)
-    return found | ({"current": {"profile": current}} if current else {})
+        data |= _viscosity(environment)
+    return data | ({"current": {"profile": current}} if current else {})
 
 
 def _viscosity(environment: Item) -> dict[str, float]:
@@ -75,8 +75,8 @@ def _current(environment: Item) -> list[list[float]]:
     turns = {row.number("CurrentRotation", 0.0) for row in rows}
     if len(turns) > 1:
         environment.left("RefCurrentDirection", "CurrentRotation: between depths the velocity's components are linear")
-    found = [_velocity(row, speed, direction, surface) for row in rows]
-    return sorted(found) or [[surface, *_along(speed, direction)]]
+    velocities = [_velocity(row, speed, direction, surface) for row in rows]
+    return sorted(velocities) or [[surface, *_along(speed, direction)]]
 
 
 def _velocity(row: Item, speed: float, direction: float, surface: float) -> list[float]:

@@ -80,9 +80,9 @@ def left_out(file: DataFile) -> list[Remark]:
 
 
 def _unread(file: DataFile) -> Iterator[Remark]:
-    for section, found in file.document.data.items():
+    for section, content in file.document.data.items():
         if folded(section) not in _ASKED_ALONE:
-            yield from _of(file, (section,), section, found)
+            yield from _of(file, (section,), section, content)
 
 
 def _of(file: DataFile, place: Path, name: str, value: Any) -> Iterator[Remark]:

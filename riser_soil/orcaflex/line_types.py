@@ -79,10 +79,10 @@ def pieces(item: Item, length: float) -> list[tuple[float, PipeOfType]]:
         length = max(points[-1][0] for points in tables.values())
     arcs = sorted({0.0, length, *(s for points in tables.values() for s, _ in points if 0.0 < s < length)})
     cuts = [*(cut for a, b in pairwise(arcs) for cut in _cuts(a, b, pipe)), length]
-    found = [(b - a, pipe(0.5 * (a + b))) for a, b in pairwise(cuts)]
+    parts = [(b - a, pipe(0.5 * (a + b))) for a, b in pairwise(cuts)]
     if not item.file.refused:
-        _tell_of_steps(item, tables, found, [pipe(s) for s in cuts])
-    return found
+        _tell_of_steps(item, tables, parts, [pipe(s) for s in cuts])
+    return parts
 
 
 def _cuts(a: float, b: float, pipe: Callable[[float], PipeOfType]) -> Iterator[float]:
@@ -101,29 +101,29 @@ def _bending(pipe: PipeOfType) -> float:
 
 
 def _tell_of_steps(
-    item: Item, tables: dict[str, list[Point]], found: list[tuple[float, PipeOfType]], at: list[PipeOfType]
+    item: Item, tables: dict[str, list[Point]], pieces: list[tuple[float, PipeOfType]], at: list[PipeOfType]
 ) -> None:
-    ends = [(pipe, end) for n, (_, pipe) in enumerate(found) for end in at[n : n + 2]]
+    ends = [(pipe, end) for n, (_, pipe) in enumerate(pieces) for end in at[n : n + 2]]
     key = next(iter(tables))
     off = max(abs(pipe.outer - end.outer) / end.outer for pipe, end in ends)
     stiffness = max(abs(_bending(pipe) / _bending(end) - 1.0) for pipe, end in ends)
     of_stiffness = f", {100.0 * stiffness:.2g} % in EI" if at[0].homogeneous else ""
     names = " and ".join(f"{key} by the table {item.word(key)}" for key in tables)
-    text = f"{len(found)} pieces of constant diameter, {100.0 * off:.2g} % off in OD at most{of_stiffness}"
+    text = f"{len(pieces)} pieces of constant diameter, {100.0 * off:.2g} % off in OD at most{of_stiffness}"
     item.left(key, f"{names}: {text}")
 
 
 def line_type(pipe: PipeOfType) -> dict[str, Any]:
     """A scene's line type."""
     item = pipe.item
-    found = {"outer_diameter": pipe.outermost, "inner_diameter": pipe.innermost} | _section(pipe)
+    data = {"outer_diameter": pipe.outermost, "inner_diameter": pipe.innermost} | _section(pipe)
     if pipe.outer < pipe.outermost:
-        found["pipe_diameter"] = pipe.outer
+        data["pipe_diameter"] = pipe.outer
     _tell(pipe)
     for ours, theirs, size in (("max_tension", "AllowableTension", FORCE), ("min_bend_radius", "MinRadius", 1.0)):
         if (value := item.numbers(theirs, 1, math.inf)[0]) not in (0.0, math.inf):
-            found[ours] = value * size
-    return found | _drag(pipe) | _added_mass(pipe)
+            data[ours] = value * size
+    return data | _drag(pipe) | _added_mass(pipe)
 
 
 def friction_of(item: Item) -> tuple[float, float]:
@@ -147,8 +147,8 @@ def _section(pipe: PipeOfType) -> dict[str, Any]:
     for key, size in (("EA", axial), ("EI", in_x)):
         if math.isinf(size):
             item.refuse(key, "is missing, or Infinity; give a number [kN.m2, kN]")
-    found = {"mass": item.number("MassPerUnitLength") * MASS, "EA": axial * FORCE, "EI": in_x * FORCE}
-    return found | {"GJ": _twisting(pipe, found)}
+    data = {"mass": item.number("MassPerUnitLength") * MASS, "EA": axial * FORCE, "EI": in_x * FORCE}
+    return data | {"GJ": _twisting(pipe, data)}
 
 
 def _pair(value: Any) -> list[Any]:
@@ -166,13 +166,13 @@ def _plain_stiffness(item: Item, key: str, value: Any) -> float:
     return item.number_in(key, value)
 
 
-def _twisting(pipe: PipeOfType, found: dict[str, float]) -> float:
+def _twisting(pipe: PipeOfType, section: dict[str, float]) -> float:
     """GJ [N m2]; of a line that does not twist one that bears no torque while an end is free to spin."""
     value = pipe.item.get("GJ")
     given = _plain_stiffness(pipe.item, "GJ", value)
     if math.isfinite(given) and given > 0.0:
         return given * FORCE
-    size = twisting_stiffness(found["EI"], found["EA"], pipe.outermost)
+    size = twisting_stiffness(section["EI"], section["EA"], pipe.outermost)
     reason = f"the line does not twist; {size:g} N.m2 here, without effect unless both ends keep it from spinning"
     if not math.isnan(given):
         pipe.item.left("GJ", f"GJ {'~' if value is None else value}: {reason}")
@@ -225,13 +225,13 @@ def _drag(pipe: PipeOfType) -> dict[str, Any]:
         points = points_of(item, key_z, along)
         along = points[0][1] if points else 0.0
         item.left(key_z, f"axial Cd by a table: its first value, {along:g}, for all velocities")
-    found: dict[str, Any] = {"tangential": item.number_in(key_z, along, 0.0) * axial}
+    drag: dict[str, Any] = {"tangential": item.number_in(key_z, along, 0.0) * axial}
     if not is_name(across):
-        return {"drag": {"normal": item.number_in(key, across, 0.0) * normal} | found}
+        return {"drag": {"normal": item.number_in(key, across, 0.0) * normal} | drag}
     # A Reynolds number of OrcaFlex is that of the drag diameter, one of a scene that of the outer one.
     points = points_of(item, key, across)
-    found["by_reynolds"] = [[max(Re, _LEAST_REYNOLDS) / normal, Cd * normal] for Re, Cd in points]
-    return {"drag": found} if points else {}
+    drag["by_reynolds"] = [[max(Re, _LEAST_REYNOLDS) / normal, Cd * normal] for Re, Cd in points]
+    return {"drag": drag} if points else {}
 
 
 def _added_mass(pipe: PipeOfType) -> dict[str, Any]:

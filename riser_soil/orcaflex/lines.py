@@ -136,10 +136,10 @@ def _segments(file: DataFile, line: Item) -> Iterator[tuple[dict[str, Any], Pipe
         if item is None:
             continue
         length = row.number("Length") if row.has("Length") or not is_name(item.get("OD")) else math.inf
-        found = pieces(item, length)
-        whole = sum(length for length, _ in found)
-        for length, pipe in found:
-            step = "" if len(found) == 1 else f" {pipe.outer:.6g} x {pipe.inner:.6g}"
+        parts = pieces(item, length)
+        whole = sum(length for length, _ in parts)
+        for length, pipe in parts:
+            step = "" if len(parts) == 1 else f" {pipe.outer:.6g} x {pipe.inner:.6g}"
             segment = {"line_type": f"{item.title}{step}", "length": length} | _elements(row, length, whole)
             yield segment, pipe, row.line("LineType")
 
@@ -161,18 +161,18 @@ def _contents(line: Item) -> dict[str, Any] | None:
     if line.choice("ContentsMethod", "Uniform") != "uniform":
         line.refuse("ContentsMethod", f"is {line.word('ContentsMethod')}; only Uniform can be carried over")
         return None
-    found = {"density": line.number("ContentsDensity", 0.0) * MASS}
+    contents = {"density": line.number("ContentsDensity", 0.0) * MASS}
     pressure = line.number("ContentsPressure", 0.0) * FORCE
     if pressure and not line.has("ContentsPressureRefZ"):
         line.left("ContentsPressure", "ContentsPressure without ContentsPressureRefZ: give the pressure and its level")
     elif pressure:
-        found |= {"pressure": pressure, "pressure_level": line.number("ContentsPressureRefZ")}
-    return found if found["density"] or pressure else None
+        contents |= {"pressure": pressure, "pressure_level": line.number("ContentsPressureRefZ")}
+    return contents if contents["density"] or pressure else None
 
 
 def _attachments(line: Item, length: float) -> list[dict[str, Any]]:
     """Clumps of the scene, each kind with its arc lengths from end A [m]; other attachments are not carried over."""
-    found = dict[str, dict[str, Any]]()
+    attachments = dict[str, dict[str, Any]]()
     for row in line.rows("AttachmentType"):
         kind = row.word("AttachmentType")
         clump = line.file.find("ClumpTypes", kind)
@@ -187,8 +187,8 @@ def _attachments(line: Item, length: float) -> list[dict[str, Any]]:
             row.refuse(of, f"is {relative}; give it relative to End A or End B")
         if any(row.numbers(key, 1)[0] for key in ("Attachmentx", "Attachmenty")):
             row.left("Attachmentx", f"attachment {kind}, beside the line's axis: it sits on it here")
-        found.setdefault(folded(kind), _clump(clump) | {"at": []})["at"].append(at)
-    return [each | {"at": sorted(each["at"])} for each in found.values()]
+        attachments.setdefault(folded(kind), _clump(clump) | {"at": []})["at"].append(at)
+    return [each | {"at": sorted(each["at"])} for each in attachments.values()]
 
 
 def _clump(item: Item) -> dict[str, Any]:
@@ -200,9 +200,9 @@ def _clump(item: Item) -> dict[str, Any]:
             shown = ", ".join(f"{value:g}" for value in values)
             what = "Cd times DragArea" if key == "DragArea" else key
             item.left(key, f"{what} of {shown} in x, y, z: that in x here, in all directions")
-    found = {"mass": item.number("Mass", 0.0) * MASS, "volume": item.number("Volume", 0.0), "drag_area": by_axis[0]}
-    found |= {"added_mass": added[0]} if found["volume"] else {}
-    return {key: value for key, value in found.items() if value != 0.0}
+    clump = {"mass": item.number("Mass", 0.0) * MASS, "volume": item.number("Volume", 0.0), "drag_area": by_axis[0]}
+    clump |= {"added_mass": added[0]} if clump["volume"] else {}
+    return {key: value for key, value in clump.items() if value != 0.0}
 
 
 def _by_axis(item: Item, key: str) -> list[float]:
@@ -288,8 +288,8 @@ def _neutral_angle(end: LineEnd, lower: LineEnd, upper: LineEnd) -> float | None
 
 def _tell_of_torsion(item: Item, data: dict[str, Any]) -> None:
     """A line without torsion bears a torque here if both ends keep it from spinning, in three dimensions."""
-    held = [key for key in ("start", "end") if "rotation" in data[key]]
-    if len(held) == 2 and item.choice("IncludeTorsion", "No") == "no":
+    clamped = [key for key in ("start", "end") if "rotation" in data[key]]
+    if len(clamped) == 2 and item.choice("IncludeTorsion", "No") == "no":
         text = "both flex joints keep the line from spinning here, so that its GJ bears torque in three dimensions"
         item.left("IncludeTorsion", f"IncludeTorsion No: {text}")
     item.get("IncludeTorsion")

@@ -40,9 +40,9 @@ def scene_of(file: DataFile, line: str | None = None, stem: str = "scene") -> Im
     for each in lines:
         lay(each, data["seabed"].get("level", -math.inf))
     stages, files = _stages(file, lines, data["water"], stem, line == ALL)
-    found = ImportedScene(data | {"stages": stages}, left_out(file), files, _origins(file, lines, line == ALL))
-    file.end_if_refused(found.remarks)
-    return found
+    imported = ImportedScene(data | {"stages": stages}, left_out(file), files, _origins(file, lines, line == ALL))
+    file.end_if_refused(imported.remarks)
+    return imported
 
 
 def _chosen(file: DataFile, name: str | None) -> list[Item]:
@@ -50,15 +50,15 @@ def _chosen(file: DataFile, name: str | None) -> list[Item]:
     lines = file.objects("Lines")
     if name == ALL and lines:
         return lines
-    found = [each for each in lines if name is None or folded(each.title) == folded(name)]
-    if not found:
+    chosen = [each for each in lines if name is None or folded(each.title) == folded(name)]
+    if not chosen:
         known = ", ".join(each.title for each in lines) or "none"
         raise SceneError(f"{file.document.name}: there is no line {name or 'at all'}; it has {known}")
     for n, each in enumerate(lines):
-        if each.values is not found[0].values:
+        if each.values is not chosen[0].values:
             each.left("Name", f"a scene has one riser; --line {each.title!r} imports this one, --line all all lines")
             file.read.add((_section(file, "Lines"), n))
-    return found[:1]
+    return chosen[:1]
 
 
 def _section(file: DataFile, name: str) -> str:
@@ -79,16 +79,16 @@ def _as_riser_or_lines(lines: list[LineWithEnds], several: bool) -> dict[str, An
 
 def _origins(file: DataFile, lines: list[LineWithEnds], several: bool) -> dict[KeyPath, int]:
     """The file's lines by what of the scene comes from them."""
-    environment, found = file.section("Environment"), dict[KeyPath, int]()
+    environment, origins = file.section("Environment"), dict[KeyPath, int]()
     asked = {("water",): "Density", ("water", "waves"): "WaveTrains", ("water", "current"): "RefCurrentSpeed",
              ("seabed",): "SeabedModel"}  # fmt: skip
-    found |= {path: environment.line(key) for path, key in asked.items()}
-    found["stages",] = file.section("General").line("StageDuration")
+    origins |= {path: environment.line(key) for path, key in asked.items()}
+    origins["stages",] = file.section("General").line("StageDuration")
     for line in lines:
         whole: KeyPath = ("lines", line.item.title) if several else ("riser",)
-        found |= {(*whole, *path): number for path, number in line.origins.items()}
-        found |= {("line_types", name): pipe.item.line("Name") for name, pipe in line.types.items()}
-    return found
+        origins |= {(*whole, *path): number for path, number in line.origins.items()}
+        origins |= {("line_types", name): pipe.item.line("Name") for name, pipe in line.types.items()}
+    return origins
 
 
 def _stages(
@@ -98,10 +98,10 @@ def _stages(
     general = file.section("General")
     durations = general.all_numbers("StageDuration")
     hang = {"name": "hang", "kind": "static"}
-    found = waves(file.section("Environment"), durations[0] if durations else 0.0, GRAVITY, water["depth"])
-    if not found or not durations:
+    sea = waves(file.section("Environment"), durations[0] if durations else 0.0, GRAVITY, water["depth"])
+    if not sea or not durations:
         return [hang], {}
-    water["waves"] = found
+    water["waves"] = sea
     files, moved = dict[str, str](), dict[str, dict[str, Any]]()
     for line in lines:
         if ends := _driven(file, line, stem, files):
@@ -115,18 +115,18 @@ def _stages(
 def _driven(file: DataFile, line: LineWithEnds, stem: str, files: dict[str, str]) -> dict[str, Any]:
     """Motions of a line's ends that vessels carry; files gets the RAOs, one file for each vessel."""
     driven = {key: _on_vessel(file, end, stem, files) for key, end in zip(_ENDS, line.ends, strict=True)}
-    return {key: found for key, found in driven.items() if found}
+    return {key: motion for key, motion in driven.items() if motion}
 
 
 def _on_vessel(file: DataFile, end: LineEnd, stem: str, files: dict[str, str]) -> dict[str, Any] | None:
     if end.vessel is None:
         return None
     vessel = re.sub(r"\W+", "_", end.vessel.title).strip("_") or "vessel"
-    found = motion(file, end.vessel, f"{stem}_{vessel}_rao.csv")
-    if found is None:
+    vessel_motion = motion(file, end.vessel, f"{stem}_{vessel}_rao.csv")
+    if vessel_motion is None:
         return None
-    files[found[0]["rao"]] = found[1]
-    return {"vessel": found[0]}
+    files[vessel_motion[0]["rao"]] = vessel_motion[1]
+    return {"vessel": vessel_motion[0]}
 
 
 def _time_step(general: Item) -> Any:

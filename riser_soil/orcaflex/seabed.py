@@ -66,21 +66,21 @@ def _law(environment: Item, g: float) -> dict[str, Any]:
     given = {_bare(key): (part, key) for part in parts for key in part.values if key != "density"}
 
     def number(names: str, size: float) -> float | None:
-        found = next((given[name] for name in given if re.fullmatch(names, name)), None)
-        return None if found is None or not found[0].has(found[1]) else found[0].number(found[1]) * size
+        value = next((given[name] for name in given if re.fullmatch(names, name)), None)
+        return None if value is None or not value[0].has(value[1]) else value[0].number(value[1]) * size
 
     strength, density = number(_STRENGTH, FORCE), number(_DENSITY, MASS)
     if strength is None:
         strength = environment.refuse("SoilShearStrengthAtMudline", "is missing; give the clay's strength [kPa]")
-    found = {"kind": "randolph-quiggin", "su": strength, "su_gradient": number(_GRADIENT, FORCE) or 0.0}
+    law = {"kind": "randolph-quiggin", "su": strength, "su_gradient": number(_GRADIENT, FORCE) or 0.0}
     if density is not None:
-        found["unit_weight"] = max(0.0, density - environment.number("Density") * MASS) * g
+        law["unit_weight"] = max(0.0, density - environment.number("Density") * MASS) * g
     values = {key: value for key, names in _LAW.items() if (value := number(names, 1.0)) is not None}
     defaults = {key: RandolphQuiggin.model_fields[key].default for key in _LAW if key not in values}
     if defaults:
         shown = ", ".join(f"{key} {value:g}" for key, value in defaults.items())
         environment.left("SeabedModel", f"nonlinear soil model: what is not given is the law's default here: {shown}")
-    return found | values
+    return law | values
 
 
 def _bare(key: str) -> str:

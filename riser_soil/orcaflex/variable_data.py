@@ -34,11 +34,11 @@ def points_of(item: Item, key: str, name: str) -> list[Point]:
     table = table_of(item, key, name)
     if table is None:
         return []
-    found = [(row.number("IndependentValue"), row.number("DependentValue")) for row in table.rows("IndependentValue")]
-    if not found or any(not b[0] > a[0] for a, b in pairwise(found)):
+    points = [(row.number("IndependentValue"), row.number("DependentValue")) for row in table.rows("IndependentValue")]
+    if not points or any(not b[0] > a[0] for a, b in pairwise(points)):
         item.refuse(key, f"the table {name} needs rows IndependentValue, DependentValue that increase; correct them")
         return []
-    return found
+    return points
 
 
 def value_at(points: list[Point], x: float) -> float:
@@ -55,9 +55,9 @@ def layers_of(item: Item, kind: str) -> list[Point]:
     if is_name(value := item.get(key)):
         table = table_of(item, key, value)
         rows = table.rows("LayerThickness") if table is not None else []
-        found = [(row.number("LayerThickness"), row.number("LayerMaterialDensity")) for row in rows]
-        if table is not None and not found:
+        layers = [(row.number("LayerThickness"), row.number("LayerMaterialDensity")) for row in rows]
+        if table is not None and not layers:
             item.refuse(key, f"the table {value} has no rows LayerThickness, LayerMaterialDensity; correct it")
-        return found
+        return layers
     thickness = item.number(key, 0.0)
     return [(thickness, item.number(f"{kind}MaterialDensity"))] if thickness != 0.0 else []

@@ -81,8 +81,8 @@ def motion(file: DataFile, vessel: Item, rao: str) -> tuple[dict[str, Any], str]
     if not table:
         raos.left("RAOs", "RAOs: there is no row of them; the vessel rests here")
         return None
-    found = {"rao": rao, "reference": place_on(vessel, raos.numbers("RAOOrigin", 3))}
-    return found | {"heading_deg": _orientation(vessel)[2]}, _text(table)
+    data = {"rao": rao, "reference": place_on(vessel, raos.numbers("RAOOrigin", 3))}
+    return data | {"heading_deg": _orientation(vessel)[2]}, _text(table)
 
 
 def _orientation(vessel: Item) -> list[float]:
@@ -106,17 +106,17 @@ def _table(kind: Item, raos: Item) -> Table:
     frequencies = sorted({w for w, _, _ in rows if 0.0 < w < math.inf})
     if not frequencies:
         return {}
-    directions = {direction: {w: found for w, at, found in rows if at == direction} for _, direction, _ in rows}
+    directions = {direction: {w: response for w, at, response in rows if at == direction} for _, direction, _ in rows}
     limits = {w for known in directions.values() for w in known if w in (0.0, math.inf)}
     if limits:
         text = "waves of no period: linear in the period below the shortest; endless ones: linear in the frequency"
         raos.left("RAOs", f"RAOs of {text}, as between all rows here")
     filled = {direction: _filled(known, frequencies, limits) for direction, known in directions.items()}
-    found = {(w, direction % 360.0): each for direction, known in filled.items() for w, each in known.items()}
-    for (w, direction), responses in list(found.items()):
+    response = {(w, direction % 360.0): each for direction, known in filled.items() for w, each in known.items()}
+    for (w, direction), responses in list(response.items()):
         for turned, signs in _mirrored(direction, kind.choice("Symmetry")):
-            found.setdefault((w, turned % 360.0), [sign * x for sign, x in zip(signs, responses, strict=True)])
-    return found
+            response.setdefault((w, turned % 360.0), [sign * x for sign, x in zip(signs, responses, strict=True)])
+    return response
 
 
 def _rows(kind: Item, raos: Item) -> Iterator[tuple[float, float, list[complex]]]:
@@ -140,15 +140,15 @@ def _filled(
     if not own:
         return {}
     table = np.array([known[w] for w in own])
-    found = {w: [complex(np.interp(w, own, column)) for column in table.T] for w in frequencies}
+    filled = {w: [complex(np.interp(w, own, column)) for column in table.T] for w in frequencies}
     first, last = frequencies[0], frequencies[-1]
     if 0.0 in limits and first > _LONGEST:
-        found[_LONGEST] = known.get(0.0, found[first])
+        filled[_LONGEST] = known.get(0.0, filled[first])
     if math.inf in limits:
         for share in _SHORTER:
-            pairs = zip(known.get(math.inf, found[last]), found[last], strict=True)
-            found[last / share] = [at_none + share * (at_last - at_none) for at_none, at_last in pairs]
-    return found
+            pairs = zip(known.get(math.inf, filled[last]), filled[last], strict=True)
+            filled[last / share] = [at_none + share * (at_last - at_none) for at_none, at_last in pairs]
+    return filled
 
 
 def _mirrored(direction: float, symmetry: str) -> Iterator[tuple[float, tuple[float, ...]]]:

@@ -29,14 +29,14 @@ _DRAWN = (
 def waves(environment: Item, build_up: float, g: float, depth: float) -> dict[str, Any] | None:
     """The scene's waves, which grow in the build-up [s]; None where there are none."""
     trains = environment.items("WaveTrains") or ([environment] if environment.has("WaveType") else [])
-    found = [train for each in trains if (train := _train(each, build_up, g, depth))]
-    alone = [train for train in found if "regular" in train]
-    if not found:
+    data = [train for each in trains if (train := _train(each, build_up, g, depth))]
+    alone = [train for train in data if "regular" in train]
+    if not data:
         return None
-    kinds = found[0] if len(found) == 1 else alone[0] if alone else {"trains": found}
-    for _ in found[1:] if alone else []:
+    kinds = data[0] if len(data) == 1 else alone[0] if alone else {"trains": data}
+    for _ in data[1:] if alone else []:
         environment.left("WaveTrains", "a wave of finite height is alone here; the other trains are not carried over")
-    if any(kind in train for train in found for kind in _PEAKED.values()):
+    if any(kind in train for train in data for kind in _PEAKED.values()):
         environment.get("WaveFrequencySpectrumDiscretisationMethod")
     ramp = {"ramp": build_up} if build_up else {}
     return kinds | ramp | ({} if "regular" in kinds else _stretching(environment))
@@ -80,16 +80,16 @@ def _regular(train: Item, kind: str, build_up: float, g: float, depth: float) ->
     known = math.isfinite(w) and depth > 0.0
     k = float(wave_number(np.array([w]), g, depth)[0]) if known else math.nan
     lag = w * later - k * (x * math.cos(toward) + y * math.sin(toward))
-    found = {"height": height, "period": period, "direction_deg": direction, "phase_deg": math.degrees(lag) % 360.0}
-    return {"airy": found} if kind == "airy" else {"regular": found | {"theory": kind}}
+    data = {"height": height, "period": period, "direction_deg": direction, "phase_deg": math.degrees(lag) % 360.0}
+    return {"airy": data} if kind == "airy" else {"regular": data | {"theory": kind}}
 
 
 def _peaked(train: Item, kind: str) -> dict[str, Any] | None:
     if not train.has("WaveHs"):
         train.left("WaveType", "WaveHs is not given: no such waves here; give them anew")
         return None
-    found = {"Hs": train.number("WaveHs"), "direction_deg": train.number("WaveDirection", 0.0)}
-    if found["Hs"] == 0.0:
+    data = {"Hs": train.number("WaveHs"), "direction_deg": train.number("WaveDirection", 0.0)}
+    if data["Hs"] == 0.0:
         return None
     if kind == "jonswap" and not train.has("WaveGamma"):
         train.left("WaveType", "WaveGamma is not given: no such waves here; give them anew")
@@ -99,16 +99,16 @@ def _peaked(train: Item, kind: str) -> dict[str, Any] | None:
     if peak is None:
         train.left("WaveType", "neither WaveTp nor WaveTz is given: no such waves here; give them anew")
         return None
-    found |= {"Tp": peak} | ({"gamma": gamma} if kind == "jonswap" else {})
+    data |= {"Tp": peak} | ({"gamma": gamma} if kind == "jonswap" else {})
     if train.has("WaveNumberOfComponents") and math.isfinite(count := train.number("WaveNumberOfComponents")):
-        found["components"] = int(count)
+        data["components"] = int(count)
     for key in _DRAWN:
         train.get(key)
     text = "seed, phases and frequencies are drawn anew, by `seed` and `components`"
     train.left("WaveType", f"{train.word('WaveType')}: {text}")
     if train.number("WaveNumberOfSpectralDirections", 1.0) > 1.0:
         train.left("WaveNumberOfSpectralDirections", "directional spreading: give `spreading: {s, directions}`")
-    return {kind: found}
+    return {kind: data}
 
 
 def _peak_period(train: Item, gamma: float) -> float | None:

@@ -131,9 +131,9 @@ def envelope(axes: Axes, run: Run, name: str, since: float = 0.0, label: str | N
 def end_reactions(panels: Sequence[Axes], runs: Mapping[str, Run], since: float = 0.0) -> None:
     """H1, H2, V1, V2 in time on four axes: forces of the supports on the riser, runs by their labels."""
     for label, run in runs.items():
-        found, seen = reactions(run), run.time >= since
+        forces, window = reactions(run), run.time >= since
         for axes, (name, words) in zip(panels, _REACTIONS.items(), strict=True):
-            axes.plot(run.time[seen], 1e-3 * getattr(found, name)[seen], label=label, linewidth=1.0)
+            axes.plot(run.time[window], 1e-3 * getattr(forces, name)[window], label=label, linewidth=1.0)
             axes.set_xlabel(TIME)
             axes.set_ylabel(words)
     if len(runs) > 1:
@@ -142,8 +142,8 @@ def end_reactions(panels: Sequence[Axes], runs: Mapping[str, Run], since: float 
 
 def end_tension(axes: Axes, run: Run, since: float = 0.0, label: str | None = None) -> None:
     """Effective tension at the end in time."""
-    seen = run.time >= since
-    axes.plot(run.time[seen], 1e-3 * run["effective_tension"][seen, -1], label=label, linewidth=1.0)
+    window = run.time >= since
+    axes.plot(run.time[window], 1e-3 * run["effective_tension"][window, -1], label=label, linewidth=1.0)
     _name(axes, TIME, "effective tension at end B [kN], + pulls")
 
 

@@ -98,9 +98,9 @@ def _draw_near(axes: Axes, damage: Damage) -> None:
     beside = max(high - low, 0.05 * float(np.ptp(arc)))
     axes.plot(arc, damage.largest, color="C3", marker=".", label="largest around")
     for angle, style in ((90.0, "--"), (270.0, ":")):
-        found = np.flatnonzero(np.isclose(damage.angles, angle))
-        if found.size:
-            axes.plot(arc, damage.per_year[:, found[0]], style, color="0.3", label=f"at {angle:g}°")
+        points = np.flatnonzero(np.isclose(damage.angles, angle))
+        if points.size:
+            axes.plot(arc, damage.per_year[:, points[0]], style, color="0.3", label=f"at {angle:g}°")
     _shade(axes, damage.touchdown)
     left, right = max(low - beside, float(arc.min())), min(high + beside, float(arc.max()))
     top = float(damage.largest[(arc >= left) & (arc <= right)].max(initial=0.0)) or 1.0

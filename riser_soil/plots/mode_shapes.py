@@ -69,8 +69,8 @@ def _draw_view(axes: Axes, lines: Sequence[tuple[Array, Array]], position: Array
     origin = position[0] if above else position[0] * [1.0, 1.0, 0.0]
     for factor, style in ((0.0, "k-"), (LARGEST * extent, "C3-"), (-LARGEST * extent, "C3--")):
         for place, moves in lines:
-            seen = place + factor * moves - origin
-            axes.plot(seen @ horizontal, seen @ upwards, style, linewidth=0.9)
+            shown = place + factor * moves - origin
+            axes.plot(shown @ horizontal, shown @ upwards, style, linewidth=0.9)
     axes.set_xlabel("horizontal distance from end A [m]")
     axes.set_ylabel("from above:\nto the left [m]" if above else "z [m], upwards")
 

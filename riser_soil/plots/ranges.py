@@ -78,10 +78,10 @@ def _limits_within(stage: StageRecords, name: str, near: tuple[float, float]) ->
     """Least and largest value between two arc lengths, with some room; None where nothing is known there."""
     arc, values = stage.run.arc, ALONG_ARC[name][1] * stage[name]
     at = [*near, *arc[(arc > near[0]) & (arc < near[1])]]
-    seen = [np.interp(at, arc, edge(values, axis=0)) for edge in (np.min, np.max)]
-    if np.isnan(seen[1]).all():
+    limits = [np.interp(at, arc, edge(values, axis=0)) for edge in (np.min, np.max)]
+    if np.isnan(limits[1]).all():
         return None
-    low, high = float(np.nanmin(seen[0])), float(np.nanmax(seen[1]))
+    low, high = float(np.nanmin(limits[0])), float(np.nanmax(limits[1]))
     room = 0.06 * (high - low) or 1e-9 + abs(high)
     return low - room, high + room
 

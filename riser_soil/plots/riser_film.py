@@ -105,7 +105,7 @@ def _write_mp4(file: Path, frames: Iterator[Array], shown: float) -> None:
 
 def ffmpeg() -> str:
     """Path of the program; ResultsError where there is none."""
-    found = shutil.which("ffmpeg")
-    if found is None:
+    program = shutil.which("ffmpeg")
+    if program is None:
         raise ResultsError("an MP4 needs the program ffmpeg, which is not there (Debian: ffmpeg); write a .gif instead")
-    return found
+    return program

@@ -85,7 +85,7 @@ def _extremes(stage: StageRecords) -> list[tuple[int, str]]:
     """Records of the stage's extremes with words for them, each record once; the last one of a stage at rest."""
     if not stage.moves:
         return [(int(stage.records[-1]), "static")]
-    end, found = stage["position"][:, -1], dict[int, list[str]]()
+    end, marks = stage["position"][:, -1], dict[int, list[str]]()
     ways = end @ along(stage.run["position"][0])
     asked: list[tuple[str, Any]] = [("least tension", stage["min_effective_tension"].argmin())]
     if "bending_moment" in stage.run.variables:
@@ -95,8 +95,8 @@ def _extremes(stage: StageRecords) -> list[tuple[int, str]]:
         if np.ptp(motion) > _MOVES * stage.run.arc[-1]:
             asked += [(words.format(near), motion.argmin()), (words.format(far), motion.argmax())]
     for words, n in asked:
-        found.setdefault(int(stage.records[n]), []).append(words)
-    return [(record, f"{', '.join(words)}: {stage.run.time[record]:.4g} s") for record, words in found.items()]
+        marks.setdefault(int(stage.records[n]), []).append(words)
+    return [(record, f"{', '.join(words)}: {stage.run.time[record]:.4g} s") for record, words in marks.items()]
 
 
 def _one_cycle(stage: StageRecords) -> IntArray:
@@ -148,12 +148,12 @@ def _draw_seabed(panels: Sequence[Axes], run: Run, position: Array, ahead: Array
     level = seabed_under(run, origin + x[:, None] * ahead)
     if level is None:
         return
-    seen, (low, high) = panels[-1].get_xlim(), panels[-1].get_ylim()
+    view, (low, high) = panels[-1].get_xlim(), panels[-1].get_ylim()
     for axes in panels:
         axes.plot(x, level, color="saddlebrown", linewidth=1.0, label="seabed")
         axes.fill_between(x, level, level - 0.05 * np.ptp(position[..., 2]), color="tan", alpha=0.5, linewidth=0.0)
-    under = level[(x >= seen[0]) & (x <= seen[1])].min(initial=np.inf)
-    panels[-1].set(xlim=seen, ylim=(min(low, under - _UNDER * (high - low)), high))
+    under = level[(x >= view[0]) & (x <= view[1])].min(initial=np.inf)
+    panels[-1].set(xlim=view, ylim=(min(low, under - _UNDER * (high - low)), high))
 
 
 def surface_level(run: Run) -> float | None:
@@ -181,10 +181,10 @@ def _zone(axes: Axes, stage: StageRecords, position: Array, ahead: Array) -> Non
     lowest = np.array([arc[z[0].argmin()]])
     places = touchdown[~np.isnan(touchdown)] if not np.isnan(touchdown).all() else lowest
     side = _ZONE * arc[-1]
-    seen = (arc >= places.min() - side) & (arc <= places.max() + side)
-    low, high = float(z[:, seen].min()), float(z[:, seen].max())
+    shown = (arc >= places.min() - side) & (arc <= places.max() + side)
+    low, high = float(z[:, shown].min()), float(z[:, shown].max())
     margin = 0.08 * (high - low)
-    axes.set_xlim(*_apart(float(x[:, seen].min()), float(x[:, seen].max()), side))
+    axes.set_xlim(*_apart(float(x[:, shown].min()), float(x[:, shown].max()), side))
     axes.set_ylim(*_apart(low - margin, high + margin, side))
     where = "touchdown zone" if not np.isnan(touchdown).all() else "lowest point"
     axes.set(title=f"{where}, heights drawn larger", xlabel=_AHEAD, ylabel=_UP)

@@ -360,8 +360,8 @@ def _draw_zone(axes: Axes, still: _Frame) -> None:
     """The pipe near the touchdown point, or its lowest one, over the ground, in the vertical plane of the riser."""
     reach, at = _ZONE * float(still.arc[-1]), still.in_plane(still.touchdown[None])[0]
     x, position = _smooth(still)
-    seen = np.abs(x - at) <= reach
-    z = position[seen, 2]
+    shown = np.abs(x - at) <= reach
+    z = position[shown, 2]
     low, high = float(z.min()) - still.radius, float(z.max()) + still.radius
     _add_pipe(axes, still, x, position[:, 2])
     margin = 0.06 * (high - low)
@@ -424,13 +424,13 @@ def _add_ground(axes: Axes, still: _Frame, x: Array, position: Array) -> None:
     ground = seabed_under(still.run, position[:: max(1, len(x) // _BETWEEN)])
     if ground is None:
         return
-    seen, low = axes.get_xlim(), axes.get_ylim()
+    view, low = axes.get_xlim(), axes.get_ylim()
     at = x[:: max(1, len(x) // _BETWEEN)]
-    at, ground = np.append(seen[0], np.append(at, seen[1])), np.append(ground[0], np.append(ground, ground[-1]))
+    at, ground = np.append(view[0], np.append(at, view[1])), np.append(ground[0], np.append(ground, ground[-1]))
     bottom = min(low[0], float(ground.min()) - 0.04 * (low[1] - low[0]))
     axes.fill_between(at, ground, bottom, color="tan", alpha=0.5, linewidth=0.0, zorder=0)
     axes.plot(at, ground, color=_GROUND, linewidth=1.0, label="seabed", zorder=0)
-    axes.set(xlim=seen, ylim=(bottom, low[1]))
+    axes.set(xlim=view, ylim=(bottom, low[1]))
 
 
 def _add_surface(axes: Axes, still: _Frame) -> None:

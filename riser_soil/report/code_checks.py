@@ -34,17 +34,17 @@ def chapter(sources: Sources) -> ReportSection:
 
 def largest(sources: Sources) -> list[tuple[LoadCase, str, dict[str, Any]]]:
     """Each check of each line type with the case and load step in which its utilisation is largest."""
-    found: dict[tuple[str, ...], tuple[LoadCase, str, dict[str, Any]]] = {}
+    worst: dict[tuple[str, ...], tuple[LoadCase, str, dict[str, Any]]] = {}
     for case in sources.cases:
         for stage in case.stages:
             for check in stage.get("code_check", ()):
                 key = tuple(str(check[name]) for name in ("line_type", "code", "check", "limit_state"))
-                known = found.get(key)
+                known = worst.get(key)
                 if check["utilisation"] is not None and (
                     known is None or check["utilisation"] > known[2]["utilisation"]
                 ):
-                    found[key] = (case, stage["name"], check)
-    return [*found.values()]
+                    worst[key] = (case, stage["name"], check)
+    return [*worst.values()]
 
 
 def _blocks(sources: Sources) -> Iterator[Block]:

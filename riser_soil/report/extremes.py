@@ -10,7 +10,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.output import Row
-from riser_soil.report.tables import NOTHING, ReportTable, compact, found, number
+from riser_soil.report.tables import NOTHING, ReportTable, compact, number, value_at
 from riser_soil.variants.key_results import key_results
 
 READ_IN = {"N": ("kN", 1e-3), "N.m": ("kN m", 1e-3)}  # units of key results, as they are read
@@ -52,7 +52,7 @@ _ROUND_OFF = 1e-9  # of the largest component, or of the largest bending moment
 def reactions_table(stage: Mapping[str, Any]) -> ReportTable:
     """Forces and moments of the supports at both ends by component, tension and angle there."""
     static = stage["kind"] == "static"
-    least = _SMALL * abs(found(stage["final"], ("max_bending_moment", "value")) or 0.0)
+    least = _SMALL * abs(value_at(stage["final"], ("max_bending_moment", "value")) or 0.0)
     rows = [
         row
         for end, name in _ENDS.items()
@@ -67,7 +67,7 @@ def _reaction(
     stage: Mapping[str, Any], path: tuple[str, str], words: str, unit: tuple[str, float], least: float
 ) -> Iterator[list[str]]:
     """A row, of a vector one for each component that is more than round-off."""
-    final, extremes = found(stage["final"], path), found(stage["extremes"], path)
+    final, extremes = value_at(stage["final"], path), value_at(stage["extremes"], path)
     if final is None or extremes is None:
         return
     if not isinstance(final, list):
@@ -142,14 +142,14 @@ def _instant(t: Array) -> str:
 def error_bars(summary: Mapping[str, Any], stage: str) -> dict[tuple[str, str], float | None]:
     """Error bars of SI by figure and min or max; empty where none were asked for."""
     known = key_results(summary)
-    bars = found(summary, ("error_bars", "quantities")) or []
+    bars = value_at(summary, ("error_bars", "quantities")) or []
     names = {f"{each['stage']}: {each['name']}": each["bar"] for each in bars if each["stage"] == stage}
     return {(known[key].figure, known[key].which): bar for key, bar in names.items() if key in known}
 
 
 def key_results_table(summary: Mapping[str, Any]) -> ReportTable:
     """What is read first: key results stage by stage, and their error bars if there are any."""
-    bars = {f"{each['stage']}: {each['name']}": each for each in found(summary, ("error_bars", "quantities")) or []}
+    bars = {f"{each['stage']}: {each['name']}": each for each in value_at(summary, ("error_bars", "quantities")) or []}
     sources = list(dict.fromkeys(source for each in bars.values() for source in each["by_source"]))
     rows = []
     for key, each in key_results(summary).items():

@@ -48,16 +48,16 @@ class FatigueResults:
     @cached_property
     def hotspots(self) -> list[int]:
         """Sections of the largest damages: each is more than its neighbours', and apart from the others."""
-        arc, damage, found = self.damage.arc, self.damage.largest, list[int]()
+        arc, damage, spots = self.damage.arc, self.damage.largest, list[int]()
         apart = _APART * float(np.ptp(arc))
         beside = np.maximum(np.append(damage[1:], 0.0), np.append(0.0, damage[:-1]))
         for n in np.argsort(-damage):
             peak = damage[n] > _LEAST * damage.max() and damage[n] >= beside[n]
-            if peak and all(abs(arc[n] - arc[other]) > apart for other in found):
-                found.append(int(n))
-            if len(found) == MOST_HOTSPOTS:
+            if peak and all(abs(arc[n] - arc[other]) > apart for other in spots):
+                spots.append(int(n))
+            if len(spots) == MOST_HOTSPOTS:
                 break
-        return found
+        return spots
 
 
 def fatigue_of(sources: Sources) -> FatigueResults | None:
@@ -77,94 +77,95 @@ def fatigue_of(sources: Sources) -> FatigueResults | None:
 
 
 def chapter(sources: Sources) -> ReportSection:
-    found = fatigue_of(sources)
-    return ReportSection("Fatigue", [] if found is None else [*_blocks(found)])
+    results = fatigue_of(sources)
+    return ReportSection("Fatigue", [] if results is None else [*_blocks(results)])
 
 
 def years(life: float) -> str:
     return f"> {_LONGEST:.0e}".replace("e+0", "e") if life > _LONGEST else number(life, 3)
 
 
-def _blocks(found: FatigueResults) -> Iterator[Block]:
-    curve, numbers = found.numbers["curve"], found.numbers
+def _blocks(results: FatigueResults) -> Iterator[Block]:
+    curve, numbers = results.numbers["curve"], results.numbers
     yield Paragraph(
         f"Rainflow cycles of the stress along the pipe, S-N curve {curve['name']} ({curve['source']}), Miner's sum, at "
         f"{numbers['points']} points around the {numbers['surface']} surface. Stress concentration factor "
         f"{number(numbers['stress_concentration'])}; with the thickness correction ranges are multiplied by "
         f"{number(numbers['factor_on_ranges'], 4)} at the hotspot. Mean stress has no influence."
     )
-    yield Paragraph(_verdict(found), "warning" if (found.utilisation or 0.0) > 1.0 else "")
-    yield TableBlock("Fatigue hotspots", _hotspots(found), words=0, key="hotspots")
-    yield TableBlock("Fatigue life along the line", _life_table(found), words=0, key="life")
-    yield TableBlock("Share of each sea state in the damage at the hotspot", _shares(found), key="shares")
+    yield Paragraph(_verdict(results), "warning" if (results.utilisation or 0.0) > 1.0 else "")
+    yield TableBlock("Fatigue hotspots", _hotspots(results), words=0, key="hotspots")
+    yield TableBlock("Fatigue life along the line", _life_table(results), words=0, key="life")
+    yield TableBlock("Share of each sea state in the damage at the hotspot", _shares(results), key="shares")
     yield PictureBlock(
         f"Fatigue life along the line, and damage in a year near the TDP and around the hotspot ({ref('hotspots')})",
-        Curves(partial(life_sheet, found.damage)),
+        Curves(partial(life_sheet, results.damage)),
     )
     warnings = [without_paths(text) for text in numbers["warnings"]]
     if warnings:
         yield Points(warnings, "warning")
 
 
-def _verdict(found: FatigueResults) -> str:
-    n = found.damage.hotspot
-    life = float(found.life[n])
+def _verdict(results: FatigueResults) -> str:
+    n = results.damage.hotspot
+    life = float(results.life[n])
     if not math.isfinite(life):
         return "There is no damage."
-    error = found.numbers["largest"].get("standard_error")
+    error = results.numbers["largest"].get("standard_error")
     by = "by those of the sea states"
     uncertain = "" if error is None else f" The damage's standard error is {100.0 * error:.0f} %, {by}."
-    where = f"at arc length {number(found.damage.arc[n], 5)} m"
-    if found.required_life is None:
+    where = f"at arc length {number(results.damage.arc[n], 5)} m"
+    if results.required_life is None:
         return f"The shortest life is {years(life)} years, {where}. No required life is given.{uncertain}"
-    needed = found.required_life * found.factor
+    needed = results.required_life * results.factor
     enough = "fulfilled" if life >= needed else "not fulfilled"
     return (
-        f"The shortest life is {years(life)} years, {where}. Required are {number(found.required_life)} years with a "
-        f"design fatigue factor (DFF) of {number(found.factor)}, that is {number(needed)} years: {enough}, utilisation "
-        f"{number(found.utilisation, 3)}.{uncertain}"
+        f"The shortest life is {years(life)} years, {where}. Required are {number(results.required_life)} years with a "
+        f"design fatigue factor (DFF) of {number(results.factor)}, that is {number(needed)} years: {enough}, "
+        f"utilisation {number(results.utilisation, 3)}.{uncertain}"
     )
 
 
-def _hotspots(found: FatigueResults) -> ReportTable:
+def _hotspots(results: FatigueResults) -> ReportTable:
     rows = []
-    for rank, n in enumerate(found.hotspots, 1):
-        angle = found.damage.angles[int(found.damage.per_year[n].argmax())]
-        damage = float(found.damage.largest[n])
-        row = [str(rank), number(found.damage.arc[n], 5), number(angle, 4), number(damage, 3), years(1.0 / damage)]
-        rows.append([*row, *_use(found, damage)])
-    return ReportTable(_head(found, ("hotspot", "arc length [m]", "angle [°]")), rows, _use_note(found))
+    for rank, n in enumerate(results.hotspots, 1):
+        angle = results.damage.angles[int(results.damage.per_year[n].argmax())]
+        damage = float(results.damage.largest[n])
+        row = [str(rank), number(results.damage.arc[n], 5), number(angle, 4), number(damage, 3), years(1.0 / damage)]
+        rows.append([*row, *_use(results, damage)])
+    return ReportTable(_head(results, ("hotspot", "arc length [m]", "angle [°]")), rows, _use_note(results))
 
 
-def _head(found: FatigueResults, first: tuple[str, ...]) -> tuple[str, ...]:
-    return (*first, "damage in a year [1/year]", "life [years]", *(("utilisation [-]",) if found.required_life else ()))
+def _head(results: FatigueResults, first: tuple[str, ...]) -> tuple[str, ...]:
+    use = ("utilisation [-]",) if results.required_life else ()
+    return (*first, "damage in a year [1/year]", "life [years]", *use)
 
 
-def _use(found: FatigueResults, damage: float) -> list[str]:
-    return [number(found.required_life * found.factor * damage, 3)] if found.required_life else []
+def _use(results: FatigueResults, damage: float) -> list[str]:
+    return [number(results.required_life * results.factor * damage, 3)] if results.required_life else []
 
 
-def _use_note(found: FatigueResults) -> str:
-    use = "Utilisation: required life times DFF over life. " if found.required_life else ""
+def _use_note(results: FatigueResults) -> str:
+    use = "Utilisation: required life times DFF over life. " if results.required_life else ""
     return f"{use}Angles count around the section: 0° left, 90° up, 270° down."
 
 
-def _life_table(found: FatigueResults) -> ReportTable:
+def _life_table(results: FatigueResults) -> ReportTable:
     """At even steps along the line, and at the hotspots."""
-    count = len(found.damage.arc)
+    count = len(results.damage.arc)
     even = np.unique(np.linspace(0, count - 1, min(MOST_ROWS, count)).round().astype(int))
-    chosen = sorted({*even.tolist(), *found.hotspots})
+    chosen = sorted({*even.tolist(), *results.hotspots})
     rows = []
     for n in chosen:
-        damage = float(found.damage.largest[n])
+        damage = float(results.damage.largest[n])
         life = math.inf if damage == 0.0 else 1.0 / damage
-        mark = "hotspot" if n in found.hotspots else ""
-        rows.append([number(found.damage.arc[n], 5), number(damage, 3), years(life), *_use(found, damage), mark])
-    return ReportTable((*_head(found, ("arc length [m]",)), ""), rows, "The shortest life around each section.")
+        mark = "hotspot" if n in results.hotspots else ""
+        rows.append([number(results.damage.arc[n], 5), number(damage, 3), years(life), *_use(results, damage), mark])
+    return ReportTable((*_head(results, ("arc length [m]",)), ""), rows, "The shortest life around each section.")
 
 
-def _shares(found: FatigueResults) -> ReportTable:
-    cases = found.numbers["cases"]
+def _shares(results: FatigueResults) -> ReportTable:
+    cases = results.numbers["cases"]
     whole = sum(case["damage_per_year"] for case in cases) or math.nan
     rows = []
     for case in sorted(cases, key=lambda each: -each["damage_per_year"]):

@@ -12,7 +12,7 @@ from riser_soil.core.output import Figure
 from riser_soil.plots.scales import shown
 from riser_soil.report.extremes import error_bars
 from riser_soil.report.sources import LoadCase
-from riser_soil.report.tables import NOTHING, found, number
+from riser_soil.report.tables import NOTHING, number, value_at
 
 Which = Literal["max", "min"]
 Bars = Mapping[tuple[str, str], float | None]
@@ -105,11 +105,11 @@ def _words(figure: Figure) -> str:
 @cache  # chapters ask for them again and again
 def results_of(case: LoadCase) -> tuple[Result, ...]:
     """All results of a case, load step by load step."""
-    found = []
+    results = []
     for stage in case.stages:
         bars = error_bars(case.run.summary, stage["name"])
-        found += [result for kind in kinds() for result in _of_stage(case, stage, kind, bars)]
-    return tuple(found)
+        results += [result for kind in kinds() for result in _of_stage(case, stage, kind, bars)]
+    return tuple(results)
 
 
 def of_stage(case: LoadCase, stage: str) -> dict[str, Result]:
@@ -150,12 +150,12 @@ def bar_shares(cases: Iterable[LoadCase]) -> dict[tuple[str, str], float]:
     """Error bars over values by kind and load step, the largest among the cases that have some: what stands for the
     others, which have the same mesh and time step.
     """
-    found: dict[tuple[str, str], float] = {}
+    shares: dict[tuple[str, str], float] = {}
     for result in (each for case in cases for each in results_of(case)):
         if result.bar is not None and result.value:
             key = (result.kind.key, result.stage)
-            found[key] = max(found.get(key, 0.0), result.bar / abs(result.value))
-    return found
+            shares[key] = max(shares.get(key, 0.0), result.bar / abs(result.value))
+    return shares
 
 
 def difference(value: Result, reference: Result, shares: Mapping[tuple[str, str], float]) -> float | None:
@@ -180,7 +180,7 @@ def _beats(one: Result, other: Result) -> bool:
 
 def _of_stage(case: LoadCase, stage: Mapping[str, Any], kind: ResultKind, bars: Bars) -> Iterator[Result]:
     if kind.figure.startswith("soil."):
-        largest = found(stage, kind.figure.split("."))
+        largest = value_at(stage, kind.figure.split("."))
         if largest is not None and largest["value"] is not None:
             static = stage["kind"] == "static"
             time = None if static else largest["time"]
@@ -199,18 +199,18 @@ def _of_stage(case: LoadCase, stage: Mapping[str, Any], kind: ResultKind, bars: 
 
 def _touches(stage: Mapping[str, Any]) -> bool:
     """Whether the ground bears anything."""
-    values = (found(stage["final"], ("contact_force",)), found(stage["extremes"], ("contact_force", "max")))
+    values = (value_at(stage["final"], ("contact_force",)), value_at(stage["extremes"], ("contact_force", "max")))
     return any(values)
 
 
 def _hangs(final: Mapping[str, Any], end: str) -> bool:
     """Whether the end lies above the other."""
-    heights = [found(final, (each, "position"))[2] for each in (end, "start" if end == "end" else "end")]
+    heights = [value_at(final, (each, "position"))[2] for each in (end, "start" if end == "end" else "end")]
     return bool(heights[0] > heights[1])
 
 
 def _static(case: LoadCase, stage: Mapping[str, Any], kind: ResultKind, path: Sequence[str]) -> Iterator[Result]:
-    value, arc = found(stage["final"], path), None
+    value, arc = value_at(stage["final"], path), None
     if isinstance(value, Mapping):
         value, arc = value["value"], value.get("arc")
     if value is not None:
@@ -218,7 +218,7 @@ def _static(case: LoadCase, stage: Mapping[str, Any], kind: ResultKind, path: Se
 
 
 def _moving(case: LoadCase, stage: Mapping[str, Any], kind: ResultKind, path: Sequence[str]) -> Iterator[Result]:
-    extremes = found(stage["extremes"], path)
+    extremes = value_at(stage["extremes"], path)
     which = _side(kind)
     if extremes is not None and extremes.get(which) is not None:
         arc, time = extremes.get(f"arc_{which}"), extremes.get(f"t_{which}")

@@ -10,7 +10,7 @@ from riser_soil.report.document import Block, Paragraph, Points, ReportSection, 
 from riser_soil.report.extremes import key_results_table
 from riser_soil.report.response import governing_case
 from riser_soil.report.sources import LoadCase, Sources
-from riser_soil.report.tables import found, number, without_paths
+from riser_soil.report.tables import number, value_at, without_paths
 
 GOOD_BALANCE = 1.0  # % of the largest energy: a residual that is less needs no remark
 _MOST_WARNINGS = 40
@@ -28,7 +28,7 @@ def chapter(sources: Sources) -> ReportSection:
 
 
 def _bars(sources: Sources) -> Iterator[Block]:
-    barred = [case for case in sources.cases if found(case.run.summary, ("error_bars", "quantities"))]
+    barred = [case for case in sources.cases if value_at(case.run.summary, ("error_bars", "quantities"))]
     if not barred:
         yield Paragraph(
             "No error bars were asked for: how far mesh and time step move the results is not known from these runs."
@@ -76,7 +76,7 @@ def _residual(case: LoadCase) -> tuple[float, str]:
     worst = (0.0, "")
     for stage in case.stages:
         energy: Mapping[str, Any] = stage.get("energy") or {}
-        value, whole = found(energy, ("worst_residual", "value")), energy.get("turned_over")
+        value, whole = value_at(energy, ("worst_residual", "value")), energy.get("turned_over")
         if stage["kind"] == "dynamic" and value is not None and whole:
             worst = max(worst, (100.0 * abs(value) / whole, stage["name"]))
     return worst

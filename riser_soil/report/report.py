@@ -86,14 +86,14 @@ def writer_of(file: Path) -> Callable[[ReportDocument, Path, Began], None]:
     try:
         if needed:
             import_module(needed)
-        found: Callable[[ReportDocument, Path, Began], None] = getattr(import_module(module), function)
+        writer: Callable[[ReportDocument, Path, Began], None] = getattr(import_module(module), function)
     except (ImportError, OSError) as err:  # OSError: a library of the system that the package loads
         reason = " ".join(str(err).split())[:200]
         raise ResultsError(
             f"{file}: a {file.suffix} file needs {needed or err}, which cannot be loaded ({reason}); install "
             "riser_soil[report] and, for PDF, Pango (Debian: libpangoft2-1.0-0), or write an .html file"
         ) from err
-    return found
+    return writer
 
 
 def _refuse_stage(sources: Sources) -> None:

@@ -103,12 +103,12 @@ def read_report_file(file: Path, options: Mapping[str, Any] | None = None) -> Re
         given = ReportFile.model_validate(document.data, context={"folder": file.parent})
     except ValidationError as err:
         raise error_of(problems_in(err, document.data, ReportFile), document) from err
-    found = {name: str(file.parent / folder) for name, folder in given.runs.items()}
-    for name, folder in found.items():
+    runs = {name: str(file.parent / folder) for name, folder in given.runs.items()}
+    for name, folder in runs.items():
         if not Run.is_there(Path(folder)):
             place = document.where(("runs",))[1]
             raise SceneError(f"{place}: runs.{name}: {folder} is not the folder of a run; correct it, or run it first")
-    return given.model_copy(update={"runs": found})
+    return given.model_copy(update={"runs": runs})
 
 
 def _from_here(key: str, value: Any) -> Any:
@@ -125,10 +125,10 @@ def of_folders(folders: Sequence[Path], given: Mapping[str, Any]) -> ReportFile:
         kind = next((kind for file, kind in KINDS.items() if (folder / file).is_file()), "runs")
         named.setdefault(kind, []).append(str(folder))
     single = {kind: named.pop(kind) for kind in ("fatigue", "modes") if kind in named}
-    for kind, found in single.items():
-        if len(found) > 1 or given.get(kind):
-            raise SceneError(f"{found[-1]}: is a second folder of riser-soil {kind}; a report takes one")
-    data: dict[str, Any] = {**named, **{kind: found[0] for kind, found in single.items()}, **given}
+    for kind, kind_folders in single.items():
+        if len(kind_folders) > 1 or given.get(kind):
+            raise SceneError(f"{kind_folders[-1]}: is a second folder of riser-soil {kind}; a report takes one")
+    data: dict[str, Any] = {**named, **{kind: kind_folders[0] for kind, kind_folders in single.items()}, **given}
     try:
         return ReportFile.model_validate(data)
     except ValidationError as err:

@@ -86,8 +86,8 @@ def _side_by_side(sources: Sources) -> Iterator[Block]:
     for case in shown:
         stage = moving(case, sources.given.stage)
         if stage is not None:
-            found = of_stage(case, stage)
-            rows.append([case.name, stage, *(found[key].text if key in found else NOTHING for key, _ in _COLUMNS)])
+            results = of_stage(case, stage)
+            rows.append([case.name, stage, *(results[key].text if key in results else NOTHING for key, _ in _COLUMNS)])
     if not rows:
         return
     same = len({row[1] for row in rows}) == 1
@@ -154,13 +154,13 @@ def _over_seeds(sources: Sources) -> Iterator[Block]:
     for name, cases in sources.groups.items():
         if len(cases) < 2 or not any(is_seed(axis) for axis in cases[0].axes):
             continue
-        found = [
+        rows = [
             of_stage(case, stage) for case in cases if (stage := moving(case, sources.given.stage)) is not None
         ]
         for key, _ in _COLUMNS:
-            values = [each[key].value for each in found if key in each]
+            values = [each[key].value for each in rows if key in each]
             if len(values) >= 2:
-                kind = found[0][key].kind
+                kind = rows[0][key].kind
                 worst = max(values) if kind.which == "max" else min(values)
                 numbers = [number(value, 4) for value in (fmean(values), stdev(values), worst)]
                 table.append([name, kind.words, kind.unit, str(len(values)), *numbers])

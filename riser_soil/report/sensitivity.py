@@ -48,14 +48,14 @@ def _blocks(sources: Sources) -> Iterator[Block]:
     shares = bar_shares(sources.cases)
     for name in names:
         changes = dict(_changes(sources, alike, _varied(sources.cases, names, name, base)))
-        for value, found in changes.items():
-            each = (_change(shares, *found.get(kind.key, (None, None))) for kind in kinds)
+        for value, change in changes.items():
+            each = (_change(shares, *change.get(kind.key, (None, None))) for kind in kinds)
             rows.append([name.words, name.label(value), *each])
         for kind in kinds:
             ends = [
-                (name.label(value), own[kind.key].value + found[kind.key][0].value - found[kind.key][1].value)
-                for value, found in changes.items()
-                if kind.key in found
+                (name.label(value), own[kind.key].value + change[kind.key][0].value - change[kind.key][1].value)
+                for value, change in changes.items()
+                if kind.key in change
             ]
             if ends:
                 bars.setdefault(kind.key, []).append(Bar(name.words, ends))
@@ -88,23 +88,23 @@ def _varied(
     cases: Sequence[LoadCase], names: Sequence[Parameter], name: Parameter, base: Mapping[tuple[str, ...], str]
 ) -> dict[str, list[LoadCase]]:
     """Cases that differ from the base in one parameter alone, by its value."""
-    found: dict[str, list[LoadCase]] = {}
+    varied: dict[str, list[LoadCase]] = {}
     for case in cases:
         others = all(other.of(case) == base[other.paths] for other in names if other is not name)
         if others and name.of(case) != base[name.paths]:
-            found.setdefault(name.of(case), []).append(case)
-    return found
+            varied.setdefault(name.of(case), []).append(case)
+    return varied
 
 
 def _mean(cases: Sequence[LoadCase], sources: Sources) -> dict[str, Result]:
     """Extremes of a load step, averaged over cases; of static runs those of the last one."""
-    found: dict[str, list[Result]] = {}
+    groups: dict[str, list[Result]] = {}
     for case in cases:
         stage = moving(case, sources.given.stage) or case.stages[-1]["name"]
         for result in results_of(case):
             if result.stage == stage:
-                found.setdefault(result.kind.key, []).append(result)
-    return {key: _averaged(results) for key, results in found.items()}
+                groups.setdefault(result.kind.key, []).append(result)
+    return {key: _averaged(results) for key, results in groups.items()}
 
 
 def _averaged(results: Sequence[Result]) -> Result:
@@ -127,14 +127,14 @@ def _changes(
     for value, cases in varied.items():
         seeds = {seeds_of(case) for case in cases}
         own = _mean([case for case in alike if seeds_of(case) in seeds] or alike, sources)
-        found = _mean(cases, sources)
-        yield value, {key: (found[key], own[key]) for key in found if key in own}
+        means = _mean(cases, sources)
+        yield value, {key: (means[key], own[key]) for key in means if key in own}
 
 
-def _change(shares: Mapping[tuple[str, str], float], found: Result | None, own: Result | None) -> str:
-    if found is None or own is None:
+def _change(shares: Mapping[tuple[str, str], float], result: Result | None, own: Result | None) -> str:
+    if result is None or own is None:
         return NOTHING
-    apart = difference(found, own, shares)
+    apart = difference(result, own, shares)
     if apart is None:
         return NOTHING
     if own.value == 0.0 or "touchdown" in own.kind.figure:

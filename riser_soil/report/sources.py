@@ -65,13 +65,13 @@ class LoadCase:
         if path == "vessel.offset":
             offset = (self.run.summary.get("vessel") or {}).get("offset")
             return None if offset is None else offset[: 3 if offset[2] else 2]
-        found: Any = self.whole if self.line else self.data
+        value: Any = self.whole if self.line else self.data
         for key in path.split("."):
-            if isinstance(found, list):
-                found = found[int(key)] if key.isdecimal() and int(key) < len(found) else None
+            if isinstance(value, list):
+                value = value[int(key)] if key.isdecimal() and int(key) < len(value) else None
             else:
-                found = found.get(key) if isinstance(found, dict) else None
-        return found
+                value = value.get(key) if isinstance(value, dict) else None
+        return value
 
     @property
     def group(self) -> tuple[tuple[str, str], ...]:
@@ -113,11 +113,11 @@ class Sources:
     @cached_property
     def groups(self) -> dict[str, list[LoadCase]]:
         """Cases that differ in their seed alone, by a name of all of them."""
-        found: dict[object, list[LoadCase]] = {}
+        groups: dict[object, list[LoadCase]] = {}
         for case in self.cases:
-            found.setdefault((Path(case.folder).parent, case.line, case.group or case.name), []).append(case)
+            groups.setdefault((Path(case.folder).parent, case.line, case.group or case.name), []).append(case)
         named: dict[str, list[LoadCase]] = {}
-        for each in found.values():
+        for each in groups.values():
             name = _group_name(each)
             named[name if name not in named else f"{name} of {Path(each[0].folder).parent.parent.name}"] = each
         return named
@@ -135,11 +135,11 @@ def opened(given: ReportFile) -> Sources:
     failed: dict[str, str] = {}
     characteristic: list[dict[str, str]] = []
     for folder in given.cases:
-        found, lost = _of_cases(folder, {case.name for case in cases})
-        cases += found
+        opened_cases, lost = _of_cases(folder, {case.name for case in cases})
+        cases += opened_cases
         failed |= lost
         characteristic += _rows(folder / _CHARACTERISTIC) if (folder / _CHARACTERISTIC).is_file() else []
-        whole |= {case.name: case.run for case in found if case.run.lines}
+        whole |= {case.name: case.run for case in opened_cases if case.run.lines}
     if not cases:
         raise ResultsError(f"{given.cases[0]}: no case of it is done, so there is nothing to report")
     for case in cases:
@@ -172,7 +172,7 @@ def _of_cases(folder: Path, known: set[str]) -> tuple[list[LoadCase], dict[str, 
     """Cases that are done, and those that are not with the reason; behind the folder's name where one has the name of a
     case that is known.
     """
-    found, failed, rows = [], {}, _rows(folder / _CASES)
+    cases, failed, rows = [], {}, _rows(folder / _CASES)
     prefix = f"{folder.name}: " if any(row[_FIRST] in known for row in rows) else ""
     for row in rows:
         values = list(row.items())
@@ -184,11 +184,11 @@ def _of_cases(folder: Path, known: set[str]) -> tuple[list[LoadCase], dict[str, 
             failed[name] = row[_REASON]
             continue
         place = folder / "cases" / row[_FIRST]
-        found += [
+        cases += [
             LoadCase(f"{name} {line}".strip(), own, str(place), axes or given, given, line)
             for line, own in Run(place).of_lines.items()
         ]
-    return found, failed
+    return cases, failed
 
 
 def _is_path(name: str) -> bool:
@@ -270,12 +270,12 @@ def _assessment(file: Path) -> Any:
 def short_names(folders: Sequence[str]) -> dict[str, str]:
     """Each folder's last name, with as many names before it as tell it from the others, by the folder."""
     parts = {folder: Path(folder).parts for folder in folders}
-    found = {}
+    names = {}
     for folder, own in parts.items():
         others = [each for each in parts.values() if each != own]
         count = next((n for n in range(1, len(own)) if all(each[-n:] != own[-n:] for each in others)), len(own))
-        found[folder] = "/".join(own[-count:])
-    return found
+        names[folder] = "/".join(own[-count:])
+    return names
 
 
 def _renamed(text: str, names: Mapping[str, str]) -> str:

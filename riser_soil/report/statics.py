@@ -36,12 +36,12 @@ def chapter(sources: Sources) -> ReportSection:
 
 def static_stage(case: LoadCase) -> str | None:
     """Name of the last static load step before anything moves; None where there is none."""
-    found = None
+    name = None
     for stage in case.stages:
         if stage["kind"] != "static":
             break
-        found = stage["name"]
-    return None if found is None else str(found)
+        name = stage["name"]
+    return None if name is None else str(name)
 
 
 def different(sources: Sources) -> dict[str, LoadCase]:
@@ -57,11 +57,11 @@ def different(sources: Sources) -> dict[str, LoadCase]:
             sharing.append((results, [case]))
         else:
             known.append(case)
-    found: dict[str, LoadCase] = {}
+    distinct: dict[str, LoadCase] = {}
     for _, cases in sharing:
         name = _common(cases, len(sharing))
-        found[name if name not in found else cases[0].name] = cases[0]
-    return found
+        distinct[name if name not in distinct else cases[0].name] = cases[0]
+    return distinct
 
 
 def _alike(one: Mapping[str, Result], other: Mapping[str, Result]) -> bool:

@@ -57,21 +57,22 @@ def _row(result: Result, best: dict[str, Result]) -> list[str]:
 
 
 def _fatigue(sources: Sources) -> Iterator[list[str]]:
-    found = fatigue_of(sources)
-    if found is None:
+    results = fatigue_of(sources)
+    if results is None:
         return
-    n, damage = found.damage.hotspot, found.damage.per_year.max()
+    n, damage = results.damage.hotspot, results.damage.per_year.max()
     life = years(1.0 / float(damage)) if damage > 0.0 else "no damage"
-    use = NOTHING if found.utilisation is None else f"{found.utilisation:.3f}"
-    yield ["shortest fatigue life", life, "years", "all sea states", NOTHING, number(found.damage.arc[n]), NOTHING, use]
+    use = NOTHING if results.utilisation is None else f"{results.utilisation:.3f}"
+    arc = number(results.damage.arc[n])
+    yield ["shortest fatigue life", life, "years", "all sea states", NOTHING, arc, NOTHING, use]
 
 
 def _verdict(sources: Sources, best: dict[str, Result]) -> Iterator[Block]:
     """What is exceeded, and what was not checked."""
     beyond = [f"{each.kind.words}, {each.text} in {each.case.name}" for each in uses(best) if each.value > 1.0]
-    found = fatigue_of(sources)
-    if found is not None and (found.utilisation or 0.0) > 1.0:
-        beyond.append(f"fatigue life, utilisation {number(found.utilisation, 3)}")
+    results = fatigue_of(sources)
+    if results is not None and (results.utilisation or 0.0) > 1.0:
+        beyond.append(f"fatigue life, utilisation {number(results.utilisation, 3)}")
     if beyond:
         yield Paragraph(f"Exceeded: {'; '.join(beyond)}.", "warning")
     if not code_checks.largest(sources):

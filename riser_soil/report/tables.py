@@ -71,7 +71,7 @@ def is_number(text: str) -> bool:
     return bool(_NUMERIC.match(text))
 
 
-def found(nested: Mapping[str, Any] | None, path: Sequence[str]) -> Any:
+def value_at(nested: Mapping[str, Any] | None, path: Sequence[str]) -> Any:
     """The entry of nested mappings at a path, or None."""
     value: Any = nested
     for key in path:

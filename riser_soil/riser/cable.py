@@ -115,14 +115,14 @@ def fit(chain: BarChain, h: float, least_H: float, near: CableBalance | None = N
     is found.
     """
     goal, straight = SpanCondition(h, least_H), _straight(chain)
-    if near is not None and (found := _newton(_held_by(chain, near), goal)) is not None and least_H < found.H:
-        return found
+    if near is not None and (balance := _newton(_held_by(chain, near), goal)) is not None and least_H < balance.H:
+        return balance
     taut = _solved(straight, straight)
     far = _nearly(taut, goal)
     if far.reach <= h:
-        found = _hardened(_solved(far, far, goal), goal)
-        if least_H < found.H:
-            return found
+        balance = _hardened(_solved(far, far, goal), goal)
+        if least_H < balance.H:
+            return balance
     slack = _hardened(_nearly(taut, SpanCondition(-np.inf, least_H)))
     if slack.reach >= h:
         return slack
@@ -164,15 +164,15 @@ def _straight(chain: BarChain) -> CableBalance:
     return CableBalance(chain, chain.load, z, V, mu / z[1:-1], mu)
 
 
-def _hardened(found: CableBalance, goal: SpanCondition | None = None) -> CableBalance:
+def _hardened(balance: CableBalance, goal: SpanCondition | None = None) -> CableBalance:
     """The balance at the final mu; unchanged where H falls far below the least H of the span condition."""
-    while found.mu > found.chain.hardest and not _is_slack(found, goal):
-        found = _solved(found, replace(found, mu=max(HARDER * found.mu, found.chain.hardest)), goal)
-    return found
+    while balance.mu > balance.chain.hardest and not _is_slack(balance, goal):
+        balance = _solved(balance, replace(balance, mu=max(HARDER * balance.mu, balance.chain.hardest)), goal)
+    return balance
 
 
-def _is_slack(found: CableBalance, goal: SpanCondition | None) -> bool:
-    return goal is not None and goal.least_H > found.H
+def _is_slack(balance: CableBalance, goal: SpanCondition | None) -> bool:
+    return goal is not None and goal.least_H > balance.H
 
 
 def _solved(known: CableBalance, trial: CableBalance, goal: SpanCondition | None = None) -> CableBalance:
@@ -181,9 +181,9 @@ def _solved(known: CableBalance, trial: CableBalance, goal: SpanCondition | None
     Found by way of values of H and mu nearer to those of a known balance where theirs are far from it. Gives up where
     H falls far below the goal's least.
     """
-    found = _newton(trial, goal)
-    if found is not None:
-        return found
+    balance = _newton(trial, goal)
+    if balance is not None:
+        return balance
     H, mu = float(np.sqrt(known.H * trial.H)), float(np.sqrt(known.mu * trial.mu))
     if abs(np.log(H / trial.H)) < NEAR and (mu == 0.0 or abs(np.log(mu / trial.mu)) < NEAR):
         raise SceneError("riser.initial: catenary: found none between the ends; give initial points")

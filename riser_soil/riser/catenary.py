@@ -102,12 +102,12 @@ def catenary(
     if heaps and (heaped := heap(chain, h, surface - start[2])) is not None:
         return replace(_in_space(*heaped, nodes, start, end, direction, 0.0), heaped=True)
     least = max(least_H, KINK * float(np.abs(w * chain.l0).max()))
-    found = fit(chain, h, least, None if near is None else near.balance)
-    slack = max(0.0, found.reach - h) if least >= found.H else 0.0
+    balance = fit(chain, h, least, None if near is None else near.balance)
+    slack = max(0.0, balance.reach - h) if least >= balance.H else 0.0
     if heaps and slack > 0.0:
-        leaning = found.x - slack * np.append(0.0, np.cumsum(chain.l0)) / chain.L
-        return replace(_in_space(leaning, found, nodes, start, end, direction, 0.0), folded=True)
-    return _in_space(found.x, found, nodes, start, end + slack * direction, direction, slack)
+        leaning = balance.x - slack * np.append(0.0, np.cumsum(chain.l0)) / chain.L
+        return replace(_in_space(leaning, balance, nodes, start, end, direction, 0.0), folded=True)
+    return _in_space(balance.x, balance, nodes, start, end + slack * direction, direction, slack)
 
 
 def _chain(l0: Array, w: Array, EA: Array, ends: tuple[float, float], level: float) -> BarChain:
@@ -135,18 +135,18 @@ def _hang_on(chain: BarChain, points: Array) -> None:
 
 
 def _in_space(
-    along: Array, found: CableBalance, nodes: IntArray, start: Array, end: Array, direction: Array, slack: float
+    along: Array, balance: CableBalance, nodes: IntArray, start: Array, end: Array, direction: Array, slack: float
 ) -> Catenary:
     """The shape at the nodes, its joints at distances along (nb + 1,) [m] from the start; it ends where it is to end,
     beyond the round-off of its balance.
     """
-    x, z, V = (values[nodes, None] for values in (along, found.z - found.chain.z0, found.V_at_joints))
-    force = found.H * direction + V * UP
+    x, z, V = (values[nodes, None] for values in (along, balance.z - balance.chain.z0, balance.V_at_joints))
+    force = balance.H * direction + V * UP
     tension = np.linalg.norm(force, axis=1)
     position = start + x * direction + z * UP
     position[-1] = end
     curve = from_nodes(position, force / tension[:, None])
-    return Catenary(curve, tension, slack, found)
+    return Catenary(curve, tension, slack, balance)
 
 
 def curvature(w: Array, H: float, T: Array) -> Array:

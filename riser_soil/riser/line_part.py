@@ -91,8 +91,8 @@ class CompiledPart(LinePart, ABC):
 
     def kernel_data(self) -> KernelData:
         """The part's kernel data, see `part_kernels`."""
-        found: KernelData = self._data
-        return found
+        data: KernelData = self._data
+        return data
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         """Write what depends on the time alone into the kernel data, for a step between two times [s]."""
@@ -204,13 +204,13 @@ class LineParts:
         self.go_to(state)
         self._find_anew()
         self._collect()
-        at, found = self.line.part, self.forces
+        at, out = self.line.part, self.forces
         if "I" in self._groups:
-            forces.inertia[at] += found.inertia.ravel()
+            forces.inertia[at] += out.inertia.ravel()
         if "F" in self._groups:
-            forces.force[at] += found.force.ravel()
+            forces.force[at] += out.force.ravel()
         if "E" in self._groups:
-            forces.end[at] += found.end.ravel()
+            forces.end[at] += out.end.ravel()
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         """Add the parts' tangent at a trial state to the line's element matrices (ne, n, n)."""

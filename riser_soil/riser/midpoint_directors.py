@@ -74,9 +74,9 @@ class PlanarDirectors:
 
     def secant(self, middle: Array) -> Secant:
         """For the rotation increments to the middle (nn, 1)."""
-        found = secant_workspace(len(middle) - 1, 2, 1)
-        _write_planar(self._frames.turn(middle).end_angle, self.fixed[0], middle, 1.0, 0.0, found)
-        return found
+        workspace = secant_workspace(len(middle) - 1, 2, 1)
+        _write_planar(self._frames.turn(middle).end_angle, self.fixed[0], middle, 1.0, 0.0, workspace)
+        return workspace
 
     def rates(self, v: Array) -> Array:
         """(ne, 2, 2) at the accepted configuration, from angular velocities (nn, 1)."""
@@ -93,9 +93,9 @@ class SpatialDirectors:
 
     def secant(self, middle: Array) -> Secant:
         """For the rotation increments to the middle (nn, 3)."""
-        found = secant_workspace(len(middle) - 1, 3, 3)
-        _write_spatial(self._frames.R, np.ascontiguousarray(middle), self.fixed[None], 0, 1.0, found)
-        return found
+        workspace = secant_workspace(len(middle) - 1, 3, 3)
+        _write_spatial(self._frames.R, np.ascontiguousarray(middle), self.fixed[None], 0, 1.0, workspace)
+        return workspace
 
     def rates(self, v: Array) -> Array:
         """(ne, 2, 3) at the accepted configuration, from body-axes angular velocities (nn, 3)."""

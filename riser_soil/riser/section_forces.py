@@ -235,11 +235,11 @@ class SectionForces:
         """
         if self._frames is not None:
             moment = at_ends(self._moment, axis=1)
-            found = np.stack([mean_beside(dot(axis, moment)) for axis in self._frames], axis=-1)
-            return np.asarray(found * self._elements.bends_beside[:, None])
-        found, (x, y, _) = np.zeros((*self._moment.shape[1:], 3)), self._line.normal
-        found[..., 1] = (y * self._line.basis[0, 0] - x * self._line.basis[1, 0]) * self._moment[0]
-        return np.asarray(found * self._elements.bends_beside[:, None])
+            components = np.stack([mean_beside(dot(axis, moment)) for axis in self._frames], axis=-1)
+            return np.asarray(components * self._elements.bends_beside[:, None])
+        components, (x, y, _) = np.zeros((*self._moment.shape[1:], 3)), self._line.normal
+        components[..., 1] = (y * self._line.basis[0, 0] - x * self._line.basis[1, 0]) * self._moment[0]
+        return np.asarray(components * self._elements.bends_beside[:, None])
 
     @cached_property
     def end_force(self) -> Array:
@@ -362,11 +362,11 @@ class SectionForces:
         """Vectors (..., 3) in global axes by components (d, ...) along the line's axes."""
         if len(components) == 3:
             return vectors(components)
-        found = np.empty((*components.shape[1:], 3))
+        out = np.empty((*components.shape[1:], 3))
         for i, (along, up) in enumerate(self._line.basis):
-            np.multiply(components[0], along, out=found[..., i])
-            found[..., i] += components[1] * up
-        return found
+            np.multiply(components[0], along, out=out[..., i])
+            out[..., i] += components[1] * up
+        return out
 
     def _moment_in_global(self, components: Array) -> Array:
         """Moments (..., 3) in global axes by components (r, ...)."""

@@ -160,11 +160,11 @@ class WallSections:
         """Values (..., ns) at the nodes (..., nn), of two sections that with more `governing` (..., ns), of equal ones
         the second; nan without a wall.
         """
-        found, (first, second) = np.full((*values.shape[:-1], nodes), np.nan), self._of_nodes
-        found[..., self.node] = values
+        out, (first, second) = np.full((*values.shape[:-1], nodes), np.nan), self._of_nodes
+        out[..., self.node] = values
         more = governing[..., first] > governing[..., second]
-        found[..., self.node[first]] = np.where(more, values[..., first], values[..., second])
-        return found
+        out[..., self.node[first]] = np.where(more, values[..., first], values[..., second])
+        return out
 
     @cached_property
     def _of_nodes(self) -> tuple[IntArray, IntArray]:

@@ -17,8 +17,8 @@ _REPORTED = "must be a percentage from 0.01 % to 20 %"
 
 def _share(value: Any) -> float:
     """A percentage as a share."""
-    found = _PERCENT.fullmatch(value) if isinstance(value, str) else None
-    share = float(found[1]) / 100.0 if found else value
+    match = _PERCENT.fullmatch(value) if isinstance(value, str) else None
+    share = float(match[1]) / 100.0 if match else value
     if isinstance(share, bool) or not isinstance(share, float) or not FINEST <= share <= COARSEST:
         raise wrong("", _REPORTED, "write accuracy: 1 %")
     return share

@@ -144,9 +144,9 @@ def excerpt(text: str, n: int) -> str:
 def refuse_others(document: Document, wanted: str) -> Document:
     """The document, if it is not another kind of file; SceneError where a command was given the wrong one."""
     keys = set(document.data) if isinstance(document.data, dict) else set()
-    found = next((kind for kind, own in FILE_KINDS.items() if keys & own), wanted)
-    if found != wanted:
-        what = f"is a {found}, and a {wanted} is wanted here: {READERS[found]} it"
+    other = next((kind for kind, own in FILE_KINDS.items() if keys & own), wanted)
+    if other != wanted:
+        what = f"is a {other}, and a {wanted} is wanted here: {READERS[other]} it"
         raise SceneError(f"{document.name}: {what}")
     return document
 

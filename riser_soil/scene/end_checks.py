@@ -21,12 +21,12 @@ def end_conflicts(scene: Scene) -> Iterator[Problem]:
 
 def _tensioners(scene: Scene) -> Iterator[Problem]:
     ends = {"start": scene.line.start, "end": scene.line.end}
-    held = [name for name, end in ends.items() if isinstance(end, Support) and end.tensioner is None]
+    fixed = [name for name, end in ends.items() if isinstance(end, Support) and end.tensioner is None]
     for name, end in ends.items():
         if not isinstance(end, Support) or end.tensioner is None:
             continue
         path: Path = ("riser", name, "tensioner")
-        if not held:
+        if not fixed:
             yield Problem(path, "nothing holds the riser's height", "give the other end a position without a tensioner")
         if end.hang_off is not None:
             yield Problem(path, "the end asks for a hang_off, too", "leave one of the two out")

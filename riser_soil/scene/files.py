@@ -48,7 +48,7 @@ def content(file: Path, most: int) -> bytes:
     if file.exists() and not file.is_file():
         raise OSError(errno.EINVAL, "it is no regular file")
     with file.open("rb") as stream:
-        found = stream.read(most + 1)
-    if len(found) > most:
+        data = stream.read(most + 1)
+    if len(data) > most:
         raise OSError(errno.EFBIG, f"it is larger than {most / 1e6:g} MB")
-    return found
+    return data

@@ -57,8 +57,8 @@ def _conflicts(scene: Scene) -> list[Problem]:
     own = [problem for check in checks for problem in check(scene)] or [*_above_seabed(scene)]
     if own:
         return own
-    found = {(p.path, p.allowed): p for name, view in by_line(scene).items() for p in _moved(conflicts(view), name)}
-    return [*found.values(), *_clearances_beyond(scene)]
+    problems = {(p.path, p.allowed): p for name, view in by_line(scene).items() for p in _moved(conflicts(view), name)}
+    return [*problems.values(), *_clearances_beyond(scene)]
 
 
 def _without_lines(scene: Scene) -> Iterator[Problem]:
@@ -105,9 +105,10 @@ def _names(scene: Scene) -> Iterator[Problem]:
 def _joints(scene: Scene) -> Iterator[Problem]:
     for name, joint in scene.joints.items():
         path: Path = ("joints", name)
-        found = [p for n, point in enumerate(joint.between) for p in _point(scene, (*path, "between", n), joint, point)]
-        yield from found
-        if found:
+        ends = enumerate(joint.between)
+        problems = [p for n, point in ends for p in _point(scene, (*path, "between", n), joint, point)]
+        yield from problems
+        if problems:
             continue
         first, second = joint.between
         if (first.line, first.body) == (second.line, second.body):
@@ -287,10 +288,10 @@ def _plane(scene: Scene) -> Iterator[Problem]:
     places = sorted((place for view in views.values() for _, place in positions(view)), key=lambda x: x[across])
     middle = places[(len(places) - 1) // 2] if places else _ORIGIN
     plane = VerticalPlane(middle, _ALONG[across], max(view.line.length for view in views.values()))
-    found = [path_of_line(path, name) for name, view in views.items() for path in leaving_the_plane(view, plane)]
-    found += [path for path, leaves in (*_of_hung(scene, plane), *_of_ground(scene, plane)) if leaves]
+    paths = [path_of_line(path, name) for name, view in views.items() for path in leaving_the_plane(view, plane)]
+    paths += [path for path, leaves in (*_of_hung(scene, plane), *_of_ground(scene, plane)) if leaves]
     allowed = f"leaves the lines' plane along {'yx'[across]}, but dimension is 2"
-    for path in dict.fromkeys(found):
+    for path in dict.fromkeys(paths):
         yield Problem(path, allowed, "set dimension: 3 or auto, or correct the value")
 
 

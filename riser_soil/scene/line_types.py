@@ -339,8 +339,8 @@ class LineType(BaseModel):
 
     def _straked(self, force: tuple[float, float, float]) -> tuple[float, float, float]:
         coefficient, frequency, width = force
-        left = 1.0 if self.strakes is None else 1.0 - self.strakes.cover * self.strakes.suppression
-        return left * coefficient, frequency, width
+        share = 1.0 if self.strakes is None else 1.0 - self.strakes.cover * self.strakes.suppression
+        return share * coefficient, frequency, width
 
     @property
     def sheds(self) -> bool:

@@ -88,8 +88,8 @@ def axis_across(scene: Scene) -> int | None:
 
 
 def _span(values: Iterable[float]) -> float:
-    found = [*values]
-    return max(found, default=0.0) - min(found, default=0.0)
+    numbers = [*values]
+    return max(numbers, default=0.0) - min(numbers, default=0.0)
 
 
 def on_soil(scene: Scene) -> Scene | None:
@@ -104,8 +104,8 @@ def _leads_to_hold(scene: Scene, name: str) -> bool:
         reached |= new
         pairs = [[point.line or point.body or "" for point in joint.between] for joint in scene.joints.values()]
         new = {other for pair in pairs if reached & {*pair} for other in pair} - reached
-    held = (getattr(scene.lines[other], end) for other in reached & {*scene.lines} for end in ENDS)
-    return bool(reached & {*scene.bodies}) or any(isinstance(end, Support) for end in held)
+    ends = (getattr(scene.lines[other], end) for other in reached & {*scene.lines} for end in ENDS)
+    return bool(reached & {*scene.bodies}) or any(isinstance(end, Support) for end in ends)
 
 
 def _without_soil(scene: Scene) -> dict[str, Any]:
@@ -209,17 +209,17 @@ def _stage(stage: Stage, given: OfLine, line: Riser) -> Stage:
 def spinning(scene: Scene) -> set[str]:
     """Lines, one of each that are clamped to each other, of which nothing keeps all from spinning about their axes."""
     groups = {name: {name} for name in scene.lines}
-    held = {name for name, line in scene.lines.items() if any(_holds(getattr(line, key)) for key in ENDS)}
+    turning = {name for name, line in scene.lines.items() if any(_holds(getattr(line, key)) for key in ENDS)}
     for joint in scene.joints.values():
         if joint.kind == "pinned" or (joint.stiffness is not None and joint.stiffness.rotation is None):
             continue
         names = [point.line for point in joint.between if point.line is not None]
         if len(names) < 2:  # held by the body, or between bodies
-            held.update(names)
+            turning.update(names)
             continue
         joined = groups[names[0]] | groups[names[1]]
         groups |= dict.fromkeys(joined, joined)
-    return {name for name in scene.lines if not groups[name] & held and name == min(groups[name])}
+    return {name for name in scene.lines if not groups[name] & turning and name == min(groups[name])}
 
 
 def _holds(end: Any) -> bool:

@@ -31,8 +31,8 @@ class NetcdfVariable:
     def at(self, places: Mapping[str, int]) -> NetcdfVariable:
         """At these places of dimensions, counted from 0; IndexError where there is none."""
         index = tuple(places.get(dim, slice(None)) for dim in self.dims)
-        left = tuple(dim for dim in self.dims if dim not in places)
-        return NetcdfVariable(left, self.values[index], self.attributes)
+        rest = tuple(dim for dim in self.dims if dim not in places)
+        return NetcdfVariable(rest, self.values[index], self.attributes)
 
     def along(self, *dims: str) -> Any:
         """Its array with the dimensions in this order."""

@@ -40,16 +40,16 @@ def doubts_of_pipes(data: Any, doubted: Collection[Path]) -> Iterator[Doubt]:
     """Numbers of line types, and forces on lines, that don't fit the others. doubted: paths that are doubtful alone."""
     places = [(path, given) for path, given in matching(data, ("line_types", "*")) if isinstance(given, dict)]
     given = {path[1]: GivenPipe(path, pipe) for path, pipe in places}
-    found = [each for pipe in given.values() for each in _of_diameters(pipe)]
-    doubtful = {each.path[1] for each in found} | {path[1] for path in doubted if path[0] == "line_types"}
+    doubts = [each for pipe in given.values() for each in _of_diameters(pipe)]
+    doubtful = {each.path[1] for each in doubts} | {path[1] for path in doubted if path[0] == "line_types"}
     pipes = {name: pipe for name, pipe in given.items() if name not in doubtful}
-    found += [each for pipe in pipes.values() for each in _of_section(pipe)]
-    found += [each for pattern in BODIES for path, body in matching(data, pattern) for each in _of_body(path, body)]
+    doubts += [each for pipe in pipes.values() for each in _of_section(pipe)]
+    doubts += [each for pattern in BODIES for path, body in matching(data, pattern) for each in _of_body(path, body)]
     water = first_number(data, ("water", "density"))
     for path, line in (place for pattern in LINES for place in matching(data, pattern)):
         if isinstance(line, dict):
-            found += _of_line(GivenLine(path, line, pipes, water))
-    yield from {each.path: each for each in reversed(found)}.values()
+            doubts += _of_line(GivenLine(path, line, pipes, water))
+    yield from {each.path: each for each in reversed(doubts)}.values()
 
 
 def first_number(data: Any, pattern: tuple[str, ...]) -> float:

@@ -52,7 +52,7 @@ def matching(data: Any, pattern: tuple[str, ...], path: Path = ()) -> list[tuple
         return [(path, data)]
     entries = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list | tuple) else ()
     within = ((key, value) for key, value in entries if pattern[0] in ("*", str(key)))
-    return [found for key, value in within for found in matching(value, pattern[1:], (*path, key))]
+    return [match for key, value in within for match in matching(value, pattern[1:], (*path, key))]
 
 
 def shown(value: Any, width: int = _WIDTH) -> str:
@@ -70,12 +70,12 @@ def shown(value: Any, width: int = _WIDTH) -> str:
 
 def _first(items: Iterable[str], count: int, width: int) -> str:
     """Those that have room, and how many there are in all."""
-    found, rest = list[str](), f"... ({count} in all)"
+    words, rest = list[str](), f"... ({count} in all)"
     for item in items:
-        if len(", ".join([*found, item, rest])) > width - 2:
+        if len(", ".join([*words, item, rest])) > width - 2:
             break
-        found.append(item)
-    return ", ".join([*found, rest])
+        words.append(item)
+    return ", ".join([*words, rest])
 
 
 def message(problem: Problem, data: Any) -> str:

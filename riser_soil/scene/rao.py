@@ -94,15 +94,15 @@ def read_rao(file: Path) -> Rao:
     """Read a table of RAOs; PydanticCustomError, with the file and its line, for what is wrong."""
     columns = read_columns(file, _KNOWN, required=("direction",))
     modes = _modes(columns)
-    found: dict[tuple[float, float], tuple[int, list[complex]]] = {}
+    rows_by_key: dict[tuple[float, float], tuple[int, list[complex]]] = {}
     responses = [_responses(columns, mode) for mode in modes]
     for row, wave in enumerate(zip(_frequencies(columns), _directions(columns), strict=True)):
         line, values = columns.lines[row], [response[row] for response in responses]
-        known = found.setdefault(wave, (line, values))
+        known = rows_by_key.setdefault(wave, (line, values))
         if any(abs(a - b) > _SAME for a, b in zip(values, known[1], strict=True)):
             text = f"{_named(wave)} was given differently in line {known[0]}; remove one of the two rows"
             raise wrong_file(f"{file}:{line}: {text}")
-    return _on_a_grid(columns, modes, {wave: values for wave, (_, values) in found.items()})
+    return _on_a_grid(columns, modes, {wave: values for wave, (_, values) in rows_by_key.items()})
 
 
 def _modes(columns: CsvColumns) -> list[str]:
@@ -146,15 +146,15 @@ def _responses(columns: CsvColumns, mode: str) -> list[complex]:
     return [amplitude * cmath.exp(-1j * lag) for amplitude, lag in pairs]
 
 
-def _on_a_grid(columns: CsvColumns, modes: list[str], found: dict[tuple[float, float], list[complex]]) -> Rao:
-    frequency = tuple(sorted({w for w, _ in found}))
-    direction = tuple(sorted({angle for _, angle in found}))
-    missing = [(w, angle) for angle in direction for w in frequency if (w, angle) not in found]
+def _on_a_grid(columns: CsvColumns, modes: list[str], responses: dict[tuple[float, float], list[complex]]) -> Rao:
+    frequency = tuple(sorted({w for w, _ in responses}))
+    direction = tuple(sorted({angle for _, angle in responses}))
+    missing = [(w, angle) for angle in direction for w in frequency if (w, angle) not in responses]
     if missing:
         text = f"there is no row for {_named(missing[0])}; give each frequency for each direction"
         raise wrong_file(f"{columns.file}: {text}")
     tables = {
-        mode: tuple(tuple(found[w, angle][n] for w in frequency) for angle in direction)
+        mode: tuple(tuple(responses[w, angle][n] for w in frequency) for angle in direction)
         for n, mode in enumerate(modes)
     }
     return Rao(frequency, direction, tables)
@@ -237,10 +237,10 @@ def _as_complex(file: Path, rao: NetcdfVariable, variables: dict[str, NetcdfVari
 
 
 def _dim(file: Path, rao: NetcdfVariable, known: tuple[str, ...]) -> str:
-    found = [dim for dim in rao.dims if dim in known]
-    if len(found) != 1:
+    dims = [dim for dim in rao.dims if dim in known]
+    if len(dims) != 1:
         raise wrong_file(f"{file}: RAO has the dimensions {', '.join(rao.dims)}, of which none or two are {known[0]}")
-    return found[0]
+    return dims[0]
 
 
 def _mode(file: Path, name: str | bytes) -> str:

@@ -60,16 +60,16 @@ def checked(document: Document, folder: Path) -> Scene:
     except ValidationError as err:
         others = [p for p in problems_in(err, data) if not _beside(p, unsupported)]
         raise with_doubts(error_of([*unsupported, *others], document), document) from err
-    found = unsupported or all_conflicts(scene) or [*void_overrides(document, scene)]
-    if found:
-        raise with_doubts(error_of(found, document), document)
+    problems = unsupported or all_conflicts(scene) or [*void_overrides(document, scene)]
+    if problems:
+        raise with_doubts(error_of(problems, document), document)
     return scene
 
 
 def with_doubts(error: RiserSoilError, document: Document) -> RiserSoilError:
     """The error after other numbers of the scene that look like those of another unit: it may follow from them."""
-    found = [each for each in doubts(document.data) if each.names_a_unit]
-    others = [each for each in found if f" {dotted(each.path)}: " not in str(error)]
+    with_units = [each for each in doubts(document.data) if each.names_a_unit]
+    others = [each for each in with_units if f" {dotted(each.path)}: " not in str(error)]
     lines = [f"{document.where(path)[1]}: {dotted(path)}: {text}" for path, text in others]
     return type(error)("\n".join([*lines, str(error)]))
 

@@ -214,8 +214,8 @@ class Scene(BaseModel):
     def surface_strength(self) -> float | None:
         """Undrained shear strength [Pa] at the surface of the soil, else of the seabed; None where it has none."""
         if self.soil is not None:
-            found = self.soil.top_law.undrained_strength(0.0)
-            return None if found is None else float(found)
+            value = self.soil.top_law.undrained_strength(0.0)
+            return None if value is None else float(value)
         strength = None if self.seabed is None else self.seabed.undrained_strength
         return None if strength is None else strength.su
 

@@ -61,30 +61,30 @@ def read_heights(file: Path) -> HeightGrid:
     """Read a table of x, y and z, a row for each point of a grid, in any order; PydanticCustomError, with the file and
     its line, for what is wrong."""
     columns = read_columns(file, dict.fromkeys("xyz", LENGTH), required=("x", "y", "z"))
-    found = _points(columns)
+    given = _points(columns)
     x, y = (tuple(sorted(set(columns.values[name]))) for name in "xy")
     for name, points in (("x", x), ("y", y)):
         if len(points) < 2:
             raise wrong_file(f"{file}: the points have {len(points)} different {name}; a grid needs two at least")
         if min(b - a for a, b in pairwise(points)) < SHORTEST:
             raise wrong_file(f"{file}: two {name} are nearer than {SHORTEST:g} m; round them to the same number")
-    if len(found) < len(x) * len(y):
-        missing = next((a, b) for a in x for b in y if (a, b) not in found)
-        text = f"its {len(found)} points have {len(x)} different x and {len(y)} different y, but there is none at"
-        remedy = f"a grid has a row for each x with each y: fill the {len(x) * len(y) - len(found)} gaps"
+    if len(given) < len(x) * len(y):
+        missing = next((a, b) for a in x for b in y if (a, b) not in given)
+        text = f"its {len(given)} points have {len(x)} different x and {len(y)} different y, but there is none at"
+        remedy = f"a grid has a row for each x with each y: fill the {len(x) * len(y) - len(given)} gaps"
         raise wrong_file(f"{file}: {text} x = {missing[0]:.10g}, y = {missing[1]:.10g} m; {remedy}")
-    return HeightGrid(x, y, tuple(tuple(found[a, b] for b in y) for a in x))
+    return HeightGrid(x, y, tuple(tuple(given[a, b] for b in y) for a in x))
 
 
 def _points(columns: CsvColumns) -> dict[tuple[float, float], float]:
     """Heights by x and y."""
-    found: dict[tuple[float, float], float] = {}
+    points: dict[tuple[float, float], float] = {}
     for line, *at, z in zip(columns.lines, *(columns.values[name] for name in "xyz"), strict=True):
-        if (at[0], at[1]) in found:
+        if (at[0], at[1]) in points:
             text = f"there is a row for x = {at[0]:.10g}, y = {at[1]:.10g} m already; remove one of the two"
             raise wrong_file(f"{columns.file}:{line}: {text}")
-        found[at[0], at[1]] = z
-    return found
+        points[at[0], at[1]] = z
+    return points
 
 
 def _runs_forward(points: tuple[tuple[float, float], ...] | None) -> tuple[tuple[float, float], ...] | None:

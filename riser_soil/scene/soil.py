@@ -301,9 +301,9 @@ class SoilScene(BaseModel):
 
     @model_validator(mode="after")
     def _strong_to_the_bottom(self) -> Self:
-        found = self.law.wrong_within(self.given_block.depth) if self.given_block and self.law else None
-        if found:
-            raise wrong("law", *found)
+        fault = self.law.wrong_within(self.given_block.depth) if self.given_block and self.law else None
+        if fault:
+            raise wrong("law", *fault)
         return self
 
     @model_validator(mode="after")
@@ -313,9 +313,9 @@ class SoilScene(BaseModel):
         if self.law is not None and self.layers is not None:
             raise wrong("layers", "is given beside law", "give either")
         depth = self.given_block.depth if self.given_block else None
-        found = wrong_layers(self.layers, depth) if self.layers else None
-        if found:
-            raise found
+        fault = wrong_layers(self.layers, depth) if self.layers else None
+        if fault:
+            raise fault
         return self
 
     @model_validator(mode="after")

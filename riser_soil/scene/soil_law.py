@@ -47,12 +47,12 @@ def strength_of(given: SoilScene, shallowest: float = 0.0) -> Callable[[IntArray
 
     def strength(volume: IntArray, depth: Array) -> Array:
         layer, below = in_layers(bottoms, depth, shallowest)
-        found = np.full(len(depth), np.inf)
+        values = np.full(len(depth), np.inf)
         for k, law in enumerate(laws):
             at = np.flatnonzero((volume if by_volume else layer) == k)
             if (su := law.undrained_strength(below[at])) is not None:
-                found[at] = su
-        return found
+                values[at] = su
+        return values
 
     return strength
 

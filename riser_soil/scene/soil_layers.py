@@ -91,7 +91,7 @@ def _too_weak(layers: Sequence[Layer], depth: float | None) -> PydanticCustomErr
     """Laws that would fail within their layer; the last one's thickness is that of a block."""
     edges = [0.0, *boundaries(layers), *([depth] if depth is not None else [])]
     for n, ((top, bottom), layer) in enumerate(zip(pairwise(edges), layers, strict=False)):
-        found = layer.law.wrong_within(bottom - top)
-        if found:
-            return wrong("layers", f"layer {n}, {bottom - top:g} m thick: {found[0]}", found[1])
+        fault = layer.law.wrong_within(bottom - top)
+        if fault:
+            return wrong("layers", f"layer {n}, {bottom - top:g} m thick: {fault[0]}", fault[1])
     return None

@@ -125,8 +125,8 @@ def meant_as_displacement(scene: Scene, name: str, before: Vector, place: Vector
         given, apart = (math.hypot(x, y, height * z) for x, y, z in (place, way))
         if apart > _FAR * scene.line.length and 0.0 < given < _SHORT * apart:
             end = getattr(scene.line, name)
-            found = isinstance(end, Support) and end.hang_off is not None and end.hang_off.by == "layback"
-            write = f"give vessel: {{offset: {_written(by)}}}" if found else f"write {_written(plus(before, by))}"
+            layback = isinstance(end, Support) and end.hang_off is not None and end.hang_off.by == "layback"
+            write = f"give vessel: {{offset: {_written(by)}}}" if layback else f"write {_written(plus(before, by))}"
             return f"move gives the place that an end goes to, not a displacement: to move it by {_written(by)} {write}"
     return ""
 

@@ -40,9 +40,9 @@ def _unwritable(data: Any, path: KeyPath = ()) -> Iterator[Problem]:
     entries = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
     for key, value in entries:
         texts = "".join(text for text in (key, value) if isinstance(text, str))
-        found = {c for c in texts if unicodedata.category(c) in ("Cc", "Cs")} - {*"\t\n\r"}
-        if found:
-            named = ", ".join(f"U+{ord(c):04X}" for c in sorted(found))
+        wrong = {c for c in texts if unicodedata.category(c) in ("Cc", "Cs")} - {*"\t\n\r"}
+        if wrong:
+            named = ", ".join(f"U+{ord(c):04X}" for c in sorted(wrong))
             yield Problem((*path, key), f"a text has no control characters, which {named} is", "leave them out")
         yield from _unwritable(value, (*path, key))
 

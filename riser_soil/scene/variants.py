@@ -155,14 +155,14 @@ def with_segment_as_long(scene: Scene, line: str, number: int, length: float) ->
 
     changed: dict[str, Any] = {"attachments": tuple(_attachment(each, at) for each in riser.attachments)}
     changed["segments"] = (*segments[:number], _as_long(segments[number], length), *segments[number + 1 :])
-    found = with_risers(scene, {**risers(scene), line: riser.model_copy(update=changed)})
+    varied = with_risers(scene, {**risers(scene), line: riser.model_copy(update=changed)})
     own: dict[str, Any] = {"stages": tuple(_with_loads(stage, line, at) for stage in scene.stages)}
     own["joints"] = {name: _joint(joint, line, at) for name, joint in scene.joints.items()}
     on_soil = not line or (scene.soil is not None and scene.soil.line == line)
     if on_soil and (arcs := scene.output.sections.arcs) is not None:
         sections = scene.output.sections.model_copy(update={"arcs": tuple(map(at, arcs))})
         own["output"] = scene.output.model_copy(update={"sections": sections})
-    return found.model_copy(update=own)
+    return varied.model_copy(update=own)
 
 
 def _as_long(segment: Segment, length: float) -> Segment:

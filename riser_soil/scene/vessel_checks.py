@@ -19,9 +19,9 @@ def vessel_conflicts(scene: Scene) -> Iterator[Problem]:
     """
     if scene.vessel is None:
         return
-    found = [*_named(scene)]
-    yield from found
-    if found:
+    problems = [*_named(scene)]
+    yield from problems
+    if problems:
         return
     ends = vessel_ends(scene)
     if not ends:

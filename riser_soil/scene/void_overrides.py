@@ -14,7 +14,7 @@ class Guess(NamedTuple):
     """A value that is solved for: its path, what finds it, and what to do in place of changing it."""
 
     path: Path
-    found: str
+    reason: str
     remedy: str
 
 
@@ -24,7 +24,7 @@ def void_overrides(document: Document, scene: Scene) -> Iterator[Problem]:
     for path, before in document.replaced.items():
         changed = (guess for guess in guesses if _is_changed(document, guess, path, before))
         if (guess := next(changed, None)) is not None:
-            yield Problem(path, f"is a first guess: {guess.found}", guess.remedy)
+            yield Problem(path, f"is a first guess: {guess.reason}", guess.remedy)
 
 
 def _is_changed(document: Document, guess: Guess, path: Path, before: Any) -> bool:
@@ -53,17 +53,17 @@ def _of_end(path: Path, riser: Riser, end: str) -> Iterator[Guess]:
     if not isinstance(support, Support):
         return
     if support.tensioner is not None:
-        found = f"the {end}'s tensioner lets it go up and down"
-        yield Guess((*path, end, "position", 2), found, "change the tension or the segments")
+        reason = f"the {end}'s tensioner lets it go up and down"
+        yield Guess((*path, end, "position", 2), reason, "change the tension or the segments")
     if support.hang_off is None:
         return
     by = support.hang_off.by
     if by == "length":
         number = 0 if end == "end" else len(riser.segments) - 1
-        found = f"the {end}'s hang_off finds this length"
-        yield Guess((*path, "segments", number, "length"), found, "change another segment, or leave hang_off out")
+        reason = f"the {end}'s hang_off finds this length"
+        yield Guess((*path, "segments", number, "length"), reason, "change another segment, or leave hang_off out")
         return
-    found = f"the {end}'s hang_off finds the distance between the ends"
+    reason = f"the {end}'s hang_off finds the distance between the ends"
     remedy = "for an offset of the vessel set vessel.offset: [dx, dy]; else leave hang_off out, or edit the scene file"
     for moved in (end,) if by == "layback" else (end, other):
-        yield from (Guess((*path, moved, "position", axis), found, remedy) for axis in (0, 1))
+        yield from (Guess((*path, moved, "position", axis), reason, remedy) for axis in (0, 1))

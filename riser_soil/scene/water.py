@@ -165,8 +165,8 @@ class Waves(BaseModel):
         if self.regular is not None:
             return ((("regular",), self.regular),)
         trains = {(): self} if self.trains is None else {("trains", n): train for n, train in enumerate(self.trains)}
-        found = (((*path, kind), getattr(train, kind)) for path, train in trains.items() for kind in KINDS)
-        return tuple((path, given) for path, given in found if given is not None)
+        kinds = (((*path, kind), getattr(train, kind)) for path, train in trains.items() for kind in KINDS)
+        return tuple((path, given) for path, given in kinds if given is not None)
 
     @property
     def period(self) -> float:

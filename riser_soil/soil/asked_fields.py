@@ -94,31 +94,31 @@ class FieldsOfLaw:
     histories: dict[str, slice]
     columns: tuple[str, ...]
 
-    def at_points(self, in_balance: Array, found: StressUpdate) -> Iterator[tuple[str, Array]]:
+    def at_points(self, in_balance: Array, update: StressUpdate) -> Iterator[tuple[str, Array]]:
         """Each field by name, (n,) or tensors (n, 6); in_balance: stress (n, 6) [Pa]."""
         for name in self.names:
             if name in self.histories:
-                values = found.history[:, self.histories[name]]
+                values = update.history[:, self.histories[name]]
                 yield name, values[:, 0] if values.shape[1] == 1 else values
             else:
-                yield name, self._tensor(name, in_balance, found)
+                yield name, self._tensor(name, in_balance, update)
 
-    def _tensor(self, name: str, in_balance: Array, found: StressUpdate) -> Array:
+    def _tensor(self, name: str, in_balance: Array, update: StressUpdate) -> Array:
         if name == "stress":
             return in_balance
         if name == EFFECTIVE:
-            return self._effective(in_balance, found)
-        strain = found.history[:, self._columns_of(STRAIN[0], 6)]
-        return strain if name == "strain" else strain - found.elastic
+            return self._effective(in_balance, update)
+        strain = update.history[:, self._columns_of(STRAIN[0], 6)]
+        return strain if name == "strain" else strain - update.elastic
 
-    def _effective(self, in_balance: Array, found: StressUpdate) -> Array:
+    def _effective(self, in_balance: Array, update: StressUpdate) -> Array:
         """Its mean is that of the law's last answer, which pore pressure belongs to: where cells have moved since, that
         is not in balance, in mean total stress and pore pressure alike.
         """
         if PORE_PRESSURE not in self.columns:
             return in_balance
-        pore = found.history[:, self._columns_of(PORE_PRESSURE, 1)][:, 0]
-        return mandel.plus_mean(mandel.deviator(in_balance), mandel.mean(found.stress) + pore)
+        pore = update.history[:, self._columns_of(PORE_PRESSURE, 1)][:, 0]
+        return mandel.plus_mean(mandel.deviator(in_balance), mandel.mean(update.stress) + pore)
 
     def _columns_of(self, name: str, count: int) -> slice:
         first = self.columns.index(name)
@@ -146,8 +146,8 @@ class WithStrain:
         return np.column_stack((own, np.zeros((len(own), 6))))
 
     def update(self, strain_increment: Array, history: Array, dt: float = math.inf) -> StressUpdate:
-        found = self._law.update(strain_increment, np.ascontiguousarray(history[:, :-6]), dt)
-        return found._replace(history=np.column_stack((found.history, history[:, -6:] + strain_increment)))
+        update = self._law.update(strain_increment, np.ascontiguousarray(history[:, :-6]), dt)
+        return update._replace(history=np.column_stack((update.history, history[:, -6:] + strain_increment)))
 
     def overstress(self, stress: Array) -> Array:
         return self._law.overstress(stress)

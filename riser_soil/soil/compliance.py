@@ -118,10 +118,10 @@ class Compliance:
         columns = self._files.find(group, (3 * len(nodes), self._numbering.free))
         if columns is not None:
             return columns
-        found = self._found(nodes)
-        columns = self._files.keep(group, found)
-        if columns is found:
-            while self._in_memory and (len(self._in_memory) + 1) * found.nbytes > HELD:
+        reordered = self._found(nodes)
+        columns = self._files.keep(group, reordered)
+        if columns is reordered:
+            while self._in_memory and (len(self._in_memory) + 1) * reordered.nbytes > HELD:
                 del self._groups[self._in_memory.popleft()]
             self._in_memory.append(group)
         return columns
@@ -137,23 +137,23 @@ class Compliance:
     def _solved(self, loads: Array) -> Array:
         """Displacements (n, k) by loads (n, k), of the free dofs."""
         given = PETSc.Mat().createDense(loads.shape, array=loads, comm=PETSc.COMM_SELF)
-        found = PETSc.Mat().createDense(loads.shape, comm=PETSc.COMM_SELF)
-        found.setUp()
-        self._solver.getFactorMatrix().matSolve(given, found)
-        out: Array = found.getDenseArray().copy()
+        solutions = PETSc.Mat().createDense(loads.shape, comm=PETSc.COMM_SELF)
+        solutions.setUp()
+        self._solver.getFactorMatrix().matSolve(given, solutions)
+        out: Array = solutions.getDenseArray().copy()
         given.destroy()
-        found.destroy()
+        solutions.destroy()
         return out
 
     def displacement(self, on_top: Array) -> Array:
         """Displacement (size,) of the whole field [m] by forces (3 np,) on the top's dofs [N]: a sum of columns."""
         forces = np.where(self.top >= 0, on_top, 0.0).reshape(-1, 3)
-        found, out = np.zeros(self._numbering.free), np.zeros(self._numbering.size)
+        values, out = np.zeros(self._numbering.free), np.zeros(self._numbering.size)
         for node in np.flatnonzero(forces.any(axis=1)):
             for force, column in zip(forces[node], self._whole(int(node)), strict=True):
-                found += force * column
+                values += force * column
         moving = self._numbering.index >= 0
-        out[moving] = found[self._numbering.index[moving]]
+        out[moving] = values[self._numbering.index[moving]]
         return out
 
 
@@ -215,8 +215,8 @@ class KeptColumns:
             except OSError as err:
                 self._writes = False
                 compiled.tell(f"the soil's compliance is not kept for other runs ({err})")
-        found = self.find(group, (columns.shape[0], columns.shape[1]))
-        return columns if found is None else found
+        kept = self.find(group, (columns.shape[0], columns.shape[1]))
+        return columns if kept is None else kept
 
     def holds_any(self) -> bool:
         """Whether columns are there, whole or not."""

@@ -33,8 +33,8 @@ class EnergyKernel:
         """Energy (n,) [J/m3], stress (n, 6) and moduli (n, 6, 6) [Pa] of strains (n, 6)."""
         n = len(self._at)
         self._given.x.array[self._at[:, :-1]] = strain
-        found = self._compiled.values()[:n]
-        return found[:, 0].copy(), found[:, 1:7].copy(), found[:, 7:].reshape(n, 6, 6).copy()
+        values = self._compiled.values()[:n]
+        return values[:, 0].copy(), values[:, 1:7].copy(), values[:, 7:].reshape(n, 6, 6).copy()
 
 
 def _with_derivatives(psi: Callable[[Any, Any], Any], given: Any) -> Any:

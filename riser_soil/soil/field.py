@@ -120,8 +120,8 @@ def top_of(grid: DistributedMesh, mesh: GatheredMesh, moves: bool) -> SoilTop:
 
 def views(grid: DistributedMesh, mesh: GatheredMesh, nodes: IntArray) -> tuple[IntArray, Array, BoolArray]:
     """Dofs of nodes (n,) of all, three each: number, sign, and whether they are supported."""
-    unfolding, held = mesh.unfolding, grid.supported(mesh.points[nodes])
-    return components(unfolding.source[nodes]), unfolding.sign[nodes].ravel(), held.ravel()
+    unfolding, supported = mesh.unfolding, grid.supported(mesh.points[nodes])
+    return components(unfolding.source[nodes]), unfolding.sign[nodes].ravel(), supported.ravel()
 
 
 def top_facets(grid: DistributedMesh, mesh: GatheredMesh) -> tuple[IntArray, IntArray]:

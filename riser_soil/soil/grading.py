@@ -118,10 +118,10 @@ class BlockSpec:
 
     def coordinates(self, axis: int) -> Array:
         """Where the layers of hexahedra meet along x, y or z (axis 2), rising; in z also where layers of soil do."""
-        found = graded(*self._grading(axis))
+        places = graded(*self._grading(axis))
         if self.half and axis == 1 - self.axis:
-            return found[(len(found) - 1) // 2 :]
-        return found if axis < 2 else landing(found, [self.level - depth for depth in self.boundaries[::-1]])
+            return places[(len(places) - 1) // 2 :]
+        return places if axis < 2 else landing(places, [self.level - depth for depth in self.boundaries[::-1]])
 
     def _grading(self, axis: int) -> tuple[float, float, Point, float, float]:
         """Low and high end, fine range, size in it and size at the ends."""
@@ -161,8 +161,8 @@ class BlockSpec:
 
 def in_units(spec: BlockSpec, unit: float) -> BlockSpec:
     """The block in units of length of so many metres."""
-    found: BlockSpec = _in_units(spec, unit)
-    return found
+    block: BlockSpec = _in_units(spec, unit)
+    return block
 
 
 def _in_units(lengths: Any, unit: float) -> Any:

@@ -75,14 +75,14 @@ QUAD = FacetKind(
 @dataclass(frozen=True, eq=False)
 class HarmonicMesh:
     """Nodes at first (n, 3), cells (nc, nn) of a family, facets (nf, nv) of the top as `SoilTop` has them, and which
-    directions (n, 3) are held.
+    directions (n, 3) are fixed.
     """
 
     family: Family
     first: Array
     cells: IntArray
     facets: IntArray
-    held: BoolArray
+    fixed: BoolArray
 
     @classmethod
     def of(cls, grid: DistributedMesh, mesh: GatheredMesh, top: SoilTop) -> HarmonicMesh:
@@ -100,10 +100,10 @@ class HarmonicMesh:
         out, at_first = self._surface(points, free & self._top, pipe)
         numbers = np.flatnonzero(free & ~self._top)
         tetrahedra = _cut(cells, TETRAHEDRA[cells.shape[1]])
-        now = _harmonic(points, at_first, tetrahedra, _may_move(numbers, self.held))
+        now = _harmonic(points, at_first, tetrahedra, _may_move(numbers, self.fixed))
         number, shares = _located(self.first[numbers], now, tetrahedra)
         out[numbers] = np.einsum("nk,nki->ni", shares, points[tetrahedra[number]])
-        out[self.held] = points[self.held]
+        out[self.fixed] = points[self.fixed]
         if skewness(self.family, out, cells).min(initial=1.0) > FOLDS:
             return out, free
         return points, np.zeros_like(free)
@@ -121,7 +121,7 @@ class HarmonicMesh:
         if not len(numbers):
             return out, at_first
         facets = Facets.of(self.facets[free[self.facets].any(axis=1)])
-        may, in_plan = _may_move(numbers, self.held)[:, :2], self.first[:, :2]
+        may, in_plan = _may_move(numbers, self.fixed)[:, :2], self.first[:, :2]
         now, then = (_harmonic(at, in_plan, facets.triangles, may) for at in (points, self.first))
         at_first[numbers] = facets.values(self.first, *facets.located(now[numbers], then))
         place, gaps, near = facets.located(then[numbers], now), np.zeros((len(points), 1)), np.unique(facets.nodes)
@@ -189,14 +189,14 @@ class Facets:
 
 def _cut(cells: IntArray, pieces: Sequence[Sequence[int]]) -> IntArray:
     """The pieces of each cell by its nodes, one cell's after the other."""
-    found = cells[:, np.array(pieces)]
-    return found.reshape(-1, found.shape[2])
+    cut = cells[:, np.array(pieces)]
+    return cut.reshape(-1, cut.shape[2])
 
 
-def _may_move(numbers: IntArray, held: BoolArray) -> BoolArray:
-    """Directions (n, 3) in which nodes (k,) may move: those not held."""
-    out = np.zeros_like(held)
-    out[numbers] = ~held[numbers]
+def _may_move(numbers: IntArray, fixed: BoolArray) -> BoolArray:
+    """Directions (n, 3) in which nodes (k,) may move: those not fixed."""
+    out = np.zeros_like(fixed)
+    out[numbers] = ~fixed[numbers]
     return out
 
 
@@ -233,7 +233,7 @@ def _located(asked: Array, images: Array, pieces: IntArray) -> tuple[IntArray, A
     middle = corners.mean(axis=1)
     radius = np.linalg.norm(corners - middle[:, None], axis=2).max(axis=1)
     near = cKDTree(asked).query_ball_point(middle, BESIDE * radius)
-    simplex, place = np.repeat(np.arange(len(pieces)), [len(found) for found in near]), np.concatenate(near).astype(int)
+    simplex, place = np.repeat(np.arange(len(pieces)), [len(group) for group in near]), np.concatenate(near).astype(int)
     simplex, place = np.append(simplex, cKDTree(middle).query(asked)[1]), np.append(place, np.arange(len(asked)))
     edges = np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
     flat = np.abs(np.linalg.det(edges)) <= FLAT * radius ** edges.shape[1]

@@ -15,13 +15,13 @@ METHODS = ("update", "evaluate", "psi")
 def formula_of(make: Callable[[], Any], depth: Array, initial: Array, label: str) -> OwnFormula:
     """The formula of the object that `make` makes, at depths (n,) [m] under a stress (n, 6) [Pa]; LawError."""
     law = asked_of_user(make)
-    found = [name for name in METHODS if callable(getattr(law, name, None))]
-    if len(found) != 1:
-        has = f"has {' and '.join(found)}" if found else "has none"
+    methods = [name for name in METHODS if callable(getattr(law, name, None))]
+    if len(methods) != 1:
+        has = f"has {' and '.join(methods)}" if methods else "has none"
         raise LawError(f"the class must have one of the methods {', '.join(METHODS)}, and {has}")
-    if found[0] == "psi":
+    if methods[0] == "psi":
         from riser_soil.soil.energy_formula import EnergyFormula
 
         return EnergyFormula(law, depth, initial, label)
     kinds: dict[str, type[OwnFormula]] = {"update": UpdateFormula, "evaluate": ConstitutiveFormula}
-    return kinds[found[0]](law, depth, initial, label)
+    return kinds[methods[0]](law, depth, initial, label)

@@ -95,14 +95,14 @@ def nearest_rows(
     """
     mirror = grid.mirror
     if mirror is None:
-        found, way = _taken(grid, _nearest, before, after, rows)
-        return found, way
+        values, way = _taken(grid, _nearest, before, after, rows)
+        return values, way
     behind = mirror.behind(after)
     asked = np.where(behind[:, None], mirror.images(after), after)
-    found, way = _taken(grid, _nearest, before, asked, rows)
-    found[behind] *= mirror.turned(columns)
+    values, way = _taken(grid, _nearest, before, asked, rows)
+    values[behind] *= mirror.turned(columns)
     way[behind] *= mirror.signs
-    return found, way
+    return values, way
 
 
 def carried_rows(grid: DistributedMesh, before: Array, after: Array, rows: Array, columns: Sequence[str]) -> Array:
@@ -118,14 +118,14 @@ def carried_rows(grid: DistributedMesh, before: Array, after: Array, rows: Array
     return _taken(grid, _carried, before, after, rows)[0]
 
 
-def _carried(places: Array, held: Array, asked: Array) -> tuple[Array]:
-    return (carried(places, held, asked),)
+def _carried(places: Array, values: Array, asked: Array) -> tuple[Array]:
+    return (carried(places, values, asked),)
 
 
-def _nearest(places: Array, held: Array, asked: Array) -> tuple[Array, Array]:
+def _nearest(places: Array, values: Array, asked: Array) -> tuple[Array, Array]:
     """Rows of the points nearest to places (n, 3), and the ways from there."""
     number: IntArray = cKDTree(places).query(asked)[1]
-    return held[number], asked - places[number]
+    return values[number], asked - places[number]
 
 
 def _taken(grid: DistributedMesh, take: Take, before: Array, after: Array, rows: Array) -> tuple[Array, ...]:
@@ -149,9 +149,9 @@ def _apart(grid: DistributedMesh, points: Array) -> Array:
 
 def _split(gathered: list[tuple[Array, Array, Array]], take: Take) -> list[tuple[Array, ...]]:
     """What each rank gets."""
-    places, held, asked = (np.concatenate(each) for each in zip(*gathered, strict=True))
+    places, values, asked = (np.concatenate(each) for each in zip(*gathered, strict=True))
     ends = np.cumsum([len(after) for _, _, after in gathered])[:-1]
-    return list(zip(*(np.split(found, ends) for found in take(places, held, asked)), strict=True))
+    return list(zip(*(np.split(column, ends) for column in take(places, values, asked)), strict=True))
 
 
 def carried_depths(

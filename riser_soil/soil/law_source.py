@@ -87,9 +87,9 @@ def _run(file: Path, changed: int) -> ModuleType:
 
 
 def _class_in(module: ModuleType, name: str, label: str) -> type[Any]:
-    found = getattr(module, name, None)
-    if isinstance(found, type):
-        return found
+    member = getattr(module, name, None)
+    if isinstance(member, type):
+        return member
     classes = [key for key, value in vars(module).items() if isinstance(value, type)]
     own = [key for key in classes if vars(module)[key].__module__ == module.__name__]
     known = f"it has {', '.join(own)}" if own else "it has none"
@@ -98,8 +98,8 @@ def _class_in(module: ModuleType, name: str, label: str) -> type[Any]:
 
 def near(word: str, known: list[str]) -> str:
     """' (did you mean "..."?)' when a known word is near, else nothing."""
-    found = difflib.get_close_matches(word, known, n=1, cutoff=0.5)
-    return f' (did you mean "{found[0]}"?)' if found else ""
+    matches = difflib.get_close_matches(word, known, n=1, cutoff=0.5)
+    return f' (did you mean "{matches[0]}"?)' if matches else ""
 
 
 def failure_in_words(error: BaseException) -> str:

@@ -91,33 +91,33 @@ def _follow(law: OwnFormula, direction: Array, dt: float) -> None:
     for size in SIZES:
         length = size - before
         increments = np.tile(length * (direction + _MOVES), (len(law.depth) // len(_MOVES), 1))
-        found = _answered(law, increments, history, dt)
-        _check_tangent(law, increments, found[0], found[1], length)
+        answer = _answered(law, increments, history, dt)
+        _check_tangent(law, increments, answer[0], answer[1], length)
         if not law.by_rate:
-            _check_time(law, increments, history, found[0])
-        history, before = np.repeat(found[2][:: len(_MOVES)], len(_MOVES), axis=0), size
+            _check_time(law, increments, history, answer[0])
+        history, before = np.repeat(answer[2][:: len(_MOVES)], len(_MOVES), axis=0), size
 
 
 def _answered(law: OwnFormula, increments: Array, history: Array, dt: float) -> Sequence[Array]:
     """The law's answer to increments and history; LawError where it fails, changes these inputs, or is not finite."""
     strain, before = increments.copy(), history.copy()
     try:
-        found = law.answer(strain, before, dt)
+        answer = law.answer(strain, before, dt)
     except LawError as err:
         raise LawError(f"{at_point(law.depth[0], increments[0])}: {err}") from err
     for name, given, after in (("increment", increments, strain), ("history", history, before)):
         if not np.array_equal(given, after):
             raise LawError(f"{at_point(law.depth[0], increments[0])}: it changes its input {name}; copy it first")
-    for values in found:
+    for values in answer:
         if not np.isfinite(values).all():
             at = _first(values)
-            raise LawError(infinite(law.depth[at], increments[at]).replace("stress or tangent", _named(found, values)))
-    return found
+            raise LawError(infinite(law.depth[at], increments[at]).replace("stress or tangent", _named(answer, values)))
+    return answer
 
 
-def _named(found: Sequence[Array], values: Array) -> str:
+def _named(answer: Sequence[Array], values: Array) -> str:
     names = ("the stress", "the tangent", "the history", "the energy stored", "the elastic strain")
-    return next(name for name, each in zip(names, found, strict=False) if each is values)
+    return next(name for name, each in zip(names, answer, strict=False) if each is values)
 
 
 def _check_tangent(law: OwnFormula, increments: Array, stress: Array, tangent: Array, length: float) -> None:

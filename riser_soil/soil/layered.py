@@ -105,17 +105,17 @@ class LayeredFormula:
 
     def update(self, strain_increment: Array, history: Array, dt: float = math.inf) -> StressUpdate:
         n, out = self.size, np.zeros_like(history)
-        found = StressUpdate(np.empty((n, 6)), np.empty((n, 6, 6)), out, np.empty(n), np.empty((n, 6)))
+        update = StressUpdate(np.empty((n, 6)), np.empty((n, 6, 6)), out, np.empty(n), np.empty((n, 6)))
         for at, own, formula in zip(self.places, self._own, self.formulas, strict=True):
             part = formula.update(strain_increment[at], history[np.ix_(at, own)], dt)
             out[np.ix_(at, own)] = part.history
-            found.stress[at], found.tangent[at] = part.stress, part.tangent
-            found.stored[at], found.elastic[at] = part.stored, part.elastic
-        return found
+            update.stress[at], update.tangent[at] = part.stress, part.tangent
+            update.stored[at], update.elastic[at] = part.stored, part.elastic
+        return update
 
     def overstress(self, stress: Array) -> Array:
-        found = zip(self.places, self.formulas, strict=True)
-        return self._at_points([formula.overstress(stress[at]) for at, formula in found])
+        layers = zip(self.places, self.formulas, strict=True)
+        return self._at_points([formula.overstress(stress[at]) for at, formula in layers])
 
     def _at_points(self, of_layers: list[Array]) -> Array:
         """Numbers of each layer's points, at all points (n,)."""

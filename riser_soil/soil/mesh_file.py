@@ -59,9 +59,9 @@ def cell_type() -> int:
     types = [int(t) for t in gmsh.model.mesh.getElementTypes(3)]
     if len(types) == 1 and types[0] in _FACES:
         return types[0]
-    found = ", ".join(gmsh.model.mesh.getElementProperties(t)[0] for t in types) or "no volume cells"
+    kinds = ", ".join(gmsh.model.mesh.getElementProperties(t)[0] for t in types) or "no volume cells"
     raise MeshError(
-        f"soil mesh: found {found}; it must hold first-order tetrahedra only or hexahedra only "
+        f"soil mesh: found {kinds}; it must hold first-order tetrahedra only or hexahedra only "
         "(in gmsh: mesh in 3 dimensions, element order 1)"
     )
 
@@ -89,8 +89,8 @@ def _mesh(kind: int, volumes: Sequence[str]) -> Mesh:
     points = np.asarray(coordinates).reshape(-1, 3)[first[np.searchsorted(known, used)]]
     _, once = np.unique(np.sort(cells, axis=1), axis=0, return_index=True)
     once = np.sort(once)
-    found = Mesh(kind, points, np.searchsorted(used, cells[once]), np.zeros(len(once), dtype=np.int64))
-    return replace(found, volume=_volumes(found, cells, once, volumes)) if volumes else found
+    mesh = Mesh(kind, points, np.searchsorted(used, cells[once]), np.zeros(len(once), dtype=np.int64))
+    return replace(mesh, volume=_volumes(mesh, cells, once, volumes)) if volumes else mesh
 
 
 def _volumes(mesh: Mesh, cells: IntArray, once: IntArray, names: Sequence[str]) -> IntArray:
@@ -103,8 +103,8 @@ def _volumes(mesh: Mesh, cells: IntArray, once: IntArray, names: Sequence[str]) 
     _, same = np.unique(np.sort(cells, axis=1), axis=0, return_inverse=True)
     same, inside = same.ravel(), np.zeros((len(names), len(once)), dtype=bool)
     for k, name in enumerate(names):
-        held = np.isin(same, same[_cells_of(mesh.kind, groups[name])])
-        inside[k] = held[once]
+        within = np.isin(same, same[_cells_of(mesh.kind, groups[name])])
+        inside[k] = within[once]
     wrong = np.flatnonzero(inside.sum(axis=0) != 1)
     if len(wrong):
         place = _place(mesh.points[mesh.cells[wrong[0]]].mean(axis=0))
@@ -172,7 +172,7 @@ def _check_hanging_nodes(mesh: Mesh, faces: IntArray) -> None:
     middle = mesh.points[corners].mean(axis=1)
     radius = np.linalg.norm(mesh.points[corners] - middle[:, None], axis=2).max(axis=1)
     near = cKDTree(mesh.points[nodes]).query_ball_point(middle, 1.001 * radius)
-    triangle = np.repeat(np.arange(len(corners)), [len(found) for found in near])
+    triangle = np.repeat(np.arange(len(corners)), [len(group) for group in near])
     node = nodes[np.concatenate(near).astype(np.int64)]
     other = (corners[triangle] != node[:, None]).all(axis=1)
     inside = _inside(mesh.points[node[other]], mesh.points[corners[triangle[other]]])
@@ -192,8 +192,8 @@ def _inside(points: Array, corners: Array) -> BoolArray:
     v = np.einsum("ni,ni->n", np.cross(arm, b), across) / twice
     w = np.einsum("ni,ni->n", np.cross(a, arm), across) / twice
     off = np.abs(np.einsum("ni,ni->n", arm, across)) / twice**0.75
-    found: BoolArray = (off < _BESIDE) & (v > -_BESIDE) & (w > -_BESIDE) & (v + w < 1.0 + _BESIDE)
-    return found
+    inside: BoolArray = (off < _BESIDE) & (v > -_BESIDE) & (w > -_BESIDE) & (v + w < 1.0 + _BESIDE)
+    return inside
 
 
 def _replace_model(mesh: Mesh) -> None:

@@ -103,18 +103,18 @@ class SoilForms:
         given = self._given(state)
         for each in self._integrals:
             key = "soil" if each.boundary is None else f"{self.name}, {each.boundary}"
-            for number, (kernel, taken) in each.slopes.items():
+            for number, (kernel, columns) in each.slopes.items():
                 share = force * (1.0 if number == U else rate)
-                values[key] += share * self._values(kernel, each.boundary, taken, given, 2)
+                values[key] += share * self._values(kernel, each.boundary, columns, given, 2)
 
     def _force(self, state: State) -> Array:
         """Nodal forces (size,)."""
         given, out = self._given(state), np.zeros(self._soil.field.size)
         for each in self._integrals:
-            kernel, taken = each.force
+            kernel, columns = each.force
             dofs = self._dofs if each.boundary is None else self._dofs[self._facets[each.boundary][:, 0]]
-            found = self._values(kernel, each.boundary, taken, given, 1)
-            out += np.bincount(dofs.ravel(), found.ravel(), minlength=out.size)
+            values = self._values(kernel, each.boundary, columns, given, 1)
+            out += np.bincount(dofs.ravel(), values.ravel(), minlength=out.size)
         return out
 
     def _given(self, state: State) -> tuple[Array, Array, Array]:
@@ -130,11 +130,11 @@ class SoilForms:
         return self._rate if state.dt == 0.0 else own(state.u) * _inverse(state.dt)
 
     def _values(
-        self, kernel: Any, boundary: str | None, taken: tuple[int, ...], given: tuple[Array, Array, Array], rank: int
+        self, kernel: Any, boundary: str | None, columns: tuple[int, ...], given: tuple[Array, Array, Array], rank: int
     ) -> Array:
         """Vectors (m, n), rank 1, or matrices (m, n, n) of the cells or a boundary's facets."""
         facets = None if boundary is None else self._facets[boundary]
-        rows = [given[number] if facets is None else given[number][facets[:, 0]] for number in taken]
+        rows = [given[number] if facets is None else given[number][facets[:, 0]] for number in columns]
         return self._soil.cells.integrals(kernel, rows, rank, facets)
 
     def energy(self, state: State) -> Energy:
@@ -205,9 +205,9 @@ def _is_linear(form: Any) -> bool:
 
 def _number(integral: Any) -> Any:
     """Number of an integral's boundary; None where it has none."""
-    found = integral.subdomain_id()
-    found = found[0] if isinstance(found, tuple) else found
-    return None if isinstance(found, str) else int(found)
+    number = integral.subdomain_id()
+    number = number[0] if isinstance(number, tuple) else number
+    return None if isinstance(number, str) else int(number)
 
 
 def _alone(integral: Any, degree: int) -> Any:
@@ -221,8 +221,8 @@ def _slope(form: Any, terms: Terms, number: int) -> Any:
     by = terms.u if number == U else terms.velocity
     if by not in form.coefficients():
         return None
-    found = ufl.algorithms.expand_derivatives(ufl.derivative(form, by, terms.change))
-    return None if found.empty() else found
+    slope = ufl.algorithms.expand_derivatives(ufl.derivative(form, by, terms.change))
+    return None if slope.empty() else slope
 
 
 def _compiled(file: Path, form: Any) -> tuple[Any, tuple[int, ...]]:

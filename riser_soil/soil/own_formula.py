@@ -87,19 +87,19 @@ class OwnFormula(ABC):
     def update(self, strain_increment: Array, history: Array, dt: float = math.inf) -> StressUpdate:
         """An answer that is none, nan, makes the solver try a smaller step."""
         try:
-            found = self.answer(strain_increment, history, dt)
-            self._tell_of_infinite(strain_increment, found[0], found[1])
+            answer = self.answer(strain_increment, history, dt)
+            self._tell_of_infinite(strain_increment, answer[0], answer[1])
         except LawError as err:
             self._tell(f"{err}: the step is tried again with a smaller one")
-            found = [np.full((len(self.depth), *shape), np.nan) for shape in ((6,), (6, 6), (len(self.columns),))]
-        return self._with_energy(found)
+            answer = [np.full((len(self.depth), *shape), np.nan) for shape in ((6,), (6, 6), (len(self.columns),))]
+        return self._with_energy(answer)
 
-    def _with_energy(self, found: Sequence[Array]) -> StressUpdate:
-        if len(found) == 5:
-            return StressUpdate(*found)
-        change = found[0] - self.initial
+    def _with_energy(self, answer: Sequence[Array]) -> StressUpdate:
+        if len(answer) == 5:
+            return StressUpdate(*answer)
+        change = answer[0] - self.initial
         elastic = mandel.elastic_strain(self.bulk, self.shear, change)
-        return StressUpdate(found[0], found[1], found[2], 0.5 * mandel.product(change, elastic), elastic)
+        return StressUpdate(answer[0], answer[1], answer[2], 0.5 * mandel.product(change, elastic), elastic)
 
     def _tell_of_infinite(self, increment: Array, stress: Array, tangent: Array) -> None:
         finite = np.isfinite(stress).all(axis=1) & np.isfinite(tangent).all(axis=(1, 2))
@@ -136,12 +136,12 @@ def at_point(depth: float, increment: Array) -> str:
 def as_array(values: Any, shape: tuple[int, ...], name: str) -> Array:
     """LawError where the shape is another one."""
     try:
-        found = np.asarray(values, dtype=float, order="C")
+        array = np.asarray(values, dtype=float, order="C")
     except (TypeError, ValueError) as err:
         raise LawError(f"{name} is no array of numbers") from err
-    if found.shape != shape:
-        raise LawError(f"{name} has the shape {found.shape}, and must have {shape}")
-    return found
+    if array.shape != shape:
+        raise LawError(f"{name} has the shape {array.shape}, and must have {shape}")
+    return array
 
 
 class UpdateFormula(OwnFormula):
@@ -158,17 +158,17 @@ class UpdateFormula(OwnFormula):
         return as_array(asked_of_user(own), (len(self.depth), len(self.columns)), "start()")
 
     def answer(self, increment: Array, history: Array, dt: float) -> Sequence[Array]:
-        found = asked_of_user(lambda: self.law.update(increment, history, dt))
-        if not isinstance(found, tuple | list) or len(found) not in (3, 5):
+        answer = asked_of_user(lambda: self.law.update(increment, history, dt))
+        if not isinstance(answer, tuple | list) or len(answer) not in (3, 5):
             what = "stress, tangent, history, and may return stored and elastic behind them"
-            raise LawError(f"update must return {what}, and returns {_kind(found)}")
+            raise LawError(f"update must return {what}, and returns {_kind(answer)}")
         n = len(self.depth)
         shapes = ((n, 6), (n, 6, 6), (n, len(self.columns)), (n,), (n, 6))
-        return [as_array(*each) for each in zip(found, shapes, StressUpdate._fields, strict=False)]
+        return [as_array(*each) for each in zip(answer, shapes, StressUpdate._fields, strict=False)]
 
 
-def _kind(found: Any) -> str:
-    return f"{len(found)} values" if isinstance(found, tuple | list) else type(found).__name__
+def _kind(value: Any) -> str:
+    return f"{len(value)} values" if isinstance(value, tuple | list) else type(value).__name__
 
 
 def _checked_columns(given: Any) -> tuple[str, ...]:
@@ -179,12 +179,12 @@ def _checked_columns(given: Any) -> tuple[str, ...]:
         raise LawError(f"columns must begin with the stress, {', '.join(STRESS)}")
     if len({*columns}) < len(columns):
         raise LawError("columns has a name twice")
-    left = [*columns]
+    unnamed = [*columns]
     for stem in [name[:-3] for name in columns if name.endswith(f"_{PLACES[0]}")]:
         tensor = [f"{stem}_{place}" for place in PLACES]
         if "/".join(tensor) in "/".join(columns):
-            left = [name for name in left if name not in tensor]
-    wrong = [name for name in left if re.search("_(x|y|z|xx|yy|zz|xy|xz|yz)$", name)]
+            unnamed = [name for name in unnamed if name not in tensor]
+    wrong = [name for name in unnamed if re.search("_(x|y|z|xx|yy|zz|xy|xz|yz)$", name)]
     if wrong:
         what = f"is named as a component of a tensor, and lacks the others beside it, {', '.join(PLACES)}"
         raise LawError(f"columns: {wrong[0]} {what}; give all six in this order, or another name")

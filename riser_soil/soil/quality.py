@@ -36,8 +36,8 @@ def quality_of(grid: DistributedMesh) -> MeshQuality:
     """Quality of a grid, known on every rank (collective)."""
     corners = grid.nodes.points[grid.nodes.cells[:, : grid.family.vertices]]
     of_kind = _quadrilaterals if grid.family.plane else _tetrahedra if corners.shape[1] == 4 else _hexahedra
-    found = grid.nodes.comm.allgather(_of_cells(corners, of_kind) if len(corners) else None)
-    ranks = [each for each in found if each is not None]
+    qualities = grid.nodes.comm.allgather(_of_cells(corners, of_kind) if len(corners) else None)
+    ranks = [each for each in qualities if each is not None]
     thin, skewed = max(ranks, key=lambda q: q.aspect), min(ranks, key=lambda q: q.jacobian)
     return MeshQuality(
         min(q.smallest for q in ranks),

@@ -54,9 +54,9 @@ class Pressing(NamedTuple):
         close = raised[self.gaps(out[raised]) < self.clear]
         if not len(close):
             return out
-        left = free.copy()
-        left[close] = False
-        return self.kept_clear(refilled, left)
+        clear = free.copy()
+        clear[close] = False
+        return self.kept_clear(refilled, clear)
 
 
 @dataclass(frozen=True, eq=False)
@@ -233,8 +233,8 @@ def smooth(at: Array, differences: Differences, across: int, band: Array, width:
     for axis in range(3):
         banded.solve(band, pivots, load[axis], width)
         for row in range(size):
-            found = load[axis, row] if sound else math.nan
+            value = load[axis, row] if sound else math.nan
             p, q = 1 + row // (nl - 2), 1 + row % (nl - 2)
-            largest = max(largest, abs(found - at[p, q, axis]))
-            at[p, q, axis] = found
+            largest = max(largest, abs(value - at[p, q, axis]))
+            at[p, q, axis] = value
     return largest

@@ -74,8 +74,8 @@ class Soil:
         self.traits = Traits("F" if inertia else "E", self.law.symmetric, roles=roles)
         self._asked = fields.of_law(self.law.columns)
         _check_start(grid, self.law, self._initial, self.cells.at_points(self._depth), K0)
-        self._found = _at_rest(self.law, self._initial)
-        self._in_balance = self._found.stress  # as the last step left it, before cells that moved asked the law again
+        self._law_state = _at_rest(self.law, self._initial)
+        self._in_balance = self._law_state.stress  # of the last step, before the law is asked again for moved cells
         self._last: _Answer | None = None
         self._elastic_share = 0.0
         self._volumes: Array = self.cells.volumes.flatten()
@@ -117,7 +117,7 @@ class Soil:
         self._elastic_share = share
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        K = self.cells.stiffness(self._moduli(self._answer(state).found.tangent))
+        K = self.cells.stiffness(self._moduli(self._answer(state).update.tangent))
         values["soil"] += weights.force * K if self._has_inertia else K
 
     def _moduli(self, consistent: Array) -> Array:
@@ -134,10 +134,10 @@ class Soil:
         With σ0 the initial stress and εe the elastic strain since then, potential = ∫ σ0:εe − load·u, which is −∫ σ0:εp
         for a geostatic start: nothing, as long as K0 = 1.
         """
-        u, _, _, found, _ = self._answer(state)
-        started = float(np.einsum("n,ni,ni->", self._volumes, self._initial, found.elastic))
+        u, _, _, update, _ = self._answer(state)
+        started = float(np.einsum("n,ni,ni->", self._volumes, self._initial, update.elastic))
         return Energy(
-            strain=float(self._volumes @ found.stored), potential=started + self._lifted - float(self._load @ u)
+            strain=float(self._volumes @ update.stored), potential=started + self._lifted - float(self._load @ u)
         )
 
     def work(self, before: State, after: State) -> Work:
@@ -150,36 +150,37 @@ class Soil:
         product of the changes of their own stress and strain. With inertia the mean stress of the step counts, and
         nothing is the scheme's.
         """
-        _, _, strain, found, _ = self._answer(after)
+        _, _, strain, update, _ = self._answer(after)
         if self._has_inertia:
-            taken = self.cells.integral(0.5 * (found.stress + self._found.stress), strain)
-            return Work(dissipated=taken - self._stores(found) + self._stored)
-        taken = self.cells.integral(found.stress, strain)
-        by_scheme = 0.5 * self.cells.integral(found.stress - self._found.stress, found.elastic - self._found.elastic)
-        return Work(dissipated=taken - self._stores(found) + self._stored, by_scheme=by_scheme)
+            absorbed = self.cells.integral(0.5 * (update.stress + self._law_state.stress), strain)
+            return Work(dissipated=absorbed - self._stores(update) + self._stored)
+        absorbed = self.cells.integral(update.stress, strain)
+        change = update.stress - self._law_state.stress, update.elastic - self._law_state.elastic
+        by_scheme = 0.5 * self.cells.integral(*change)
+        return Work(dissipated=absorbed - self._stores(update) + self._stored, by_scheme=by_scheme)
 
-    def _stores(self, found: StressUpdate) -> float:
+    def _stores(self, update: StressUpdate) -> float:
         """Energy [J] since the start, what the initial stress has done included."""
-        return float(self._volumes @ (found.stored + mandel.product(self._initial, found.elastic)))
+        return float(self._volumes @ (update.stored + mandel.product(self._initial, update.elastic)))
 
     def commit(self, state: State) -> None:
         """Soil that has not moved, and whose history has not changed, answers as before."""
-        u, dt, _, found, _ = self._answer(state)
-        self._stored, self._lifted = self._stores(found), self._lifted - float(self._load @ u)
-        self._in_balance = found.stress
+        u, dt, _, update, _ = self._answer(state)
+        self._stored, self._lifted = self._stores(update), self._lifted - float(self._load @ u)
+        self._in_balance = update.stress
         if u.any() and self.moves:
-            found = self._move(u, dt)
-        if u.any() or not np.array_equal(found.history, self._found.history):
+            update = self._move(u, dt)
+        if u.any() or not np.array_equal(update.history, self._law_state.history):
             self._last = None
-        self._found = found._replace(tangent=np.empty(0))
+        self._law_state = update._replace(tangent=np.empty(0))
 
     def _move(self, u: Array, dt: float) -> StressUpdate:
         """Let the nodes move by u within dt [s]; the law's answer to that."""
         self._cells_ahead = False
-        found = moved_on(self.cells, self.points, u, self.law, self._found.history, dt)
+        update = moved_on(self.cells, self.points, u, self.law, self._law_state.history, dt)
         self.cells.renew(self.points + u.reshape(-1, 3))
         self._load = self._held + self._weight()
-        return found
+        return update
 
     def place(self, state: State) -> None:
         """Take gradients, weight and areas of contact at large strain where a state of the step has the nodes; where
@@ -224,9 +225,9 @@ class Soil:
     def inadmissible(self, state: State) -> str:
         """Where a step would fold a cell; collective."""
         moved = self.points + self.field.own(state.u).reshape(-1, 3)
-        found = skewness(self.grid.family, moved, self.cells.nodes) if self.moves else np.ones(1)
-        worst = int(found.argmin()) if found.size else 0
-        mine = (float(found[worst]), moved[self.cells.nodes[worst]].mean(axis=0).tolist()) if found.size else (1.0, [])
+        skew = skewness(self.grid.family, moved, self.cells.nodes) if self.moves else np.ones(1)
+        worst = int(skew.argmin()) if skew.size else 0
+        mine = (float(skew[worst]), moved[self.cells.nodes[worst]].mean(axis=0).tolist()) if skew.size else (1.0, [])
         least, at = min(self.grid.nodes.comm.allgather(mine))
         if least > FOLDS:
             return ""
@@ -241,7 +242,7 @@ class Soil:
         if len(top):
             moved = points[top] - self.mesh.points[top]
             self.surface.take(self.surface.sign.reshape(-1, 3) * moved)
-        self._stored = self._stores(self._found)
+        self._stored = self._stores(self._law_state)
 
     def _move_to(self, before: Array, after: Array, made: BoolArray) -> None:
         """made (n,): this rank's nodes of new cells."""
@@ -256,14 +257,14 @@ class Soil:
         self._volumes[new_points] = self.cells.volumes.ravel()[new_points]
         self._take_material()
         self._load, self._last = self._held + self._weight(), None
-        found = self.law.update(np.zeros((len(history), 6)), self._balanced(history), dt=0.0)
-        for now, kept in zip(found, self._found._replace(tangent=found.tangent), strict=True):
+        update = self.law.update(np.zeros((len(history), 6)), self._balanced(history), dt=0.0)
+        for now, kept in zip(update, self._law_state._replace(tangent=update.tangent), strict=True):
             now[~new_points] = kept[~new_points]
-        self._found = found._replace(tangent=np.empty(0))
+        self._law_state = update._replace(tangent=np.empty(0))
 
     def _history_beyond_weight(self, points: Array) -> Array:
         """The history with the stress beyond what the weight makes of it by height, nodes at points (n, 3)."""
-        history = self._found.history.copy()
+        history = self._law_state.history.copy()
         self._stress_in(history)[:] -= self._by_height(points)
         return history
 
@@ -295,7 +296,7 @@ class Soil:
         all_of = self.mesh.unfolding
         moved = all_of.vectors(gather_rows(self.grid, owned))
         mean, mises, used, plastic = (self._mean_of_all(values) for values in self._invariants())
-        asked = self._asked.at_points(self._in_balance, self._found)
+        asked = self._asked.at_points(self._in_balance, self._law_state)
         displacement = np.concatenate([moved, moved]) if self.grid.family.plane else moved
         of_cells = {name: self._mean_of_all(values) for name, values in asked}
         return SoilSnapshot(displacement, mean, mises, used, plastic, of_cells)
@@ -309,7 +310,7 @@ class Soil:
 
     def stress_change(self) -> Array:
         """Equivalent stress of the change since the start, mean of each of this rank's cells [Pa]."""
-        return self.cells.mean(mandel.von_mises(self._found.stress - self._initial))
+        return self.cells.mean(mandel.von_mises(self._law_state.stress - self._initial))
 
     def _invariants(self) -> tuple[Array, Array, Array, Array]:
         """Invariants (n,) of the stress in balance, each in the order of `SoilSnapshot`.
@@ -332,12 +333,12 @@ class Soil:
 
     def _new_answer(self, u: Array, dt: float) -> _Answer:
         strain = self.cells.strain(u)
-        found = self.law.update(strain, self._found.history, dt)
-        return _Answer(u, dt, strain, found, self._internal(found.stress) - self._load)
+        update = self.law.update(strain, self._law_state.history, dt)
+        return _Answer(u, dt, strain, update, self._internal(update.stress) - self._load)
 
     def _plastic_strain(self) -> Array:
         """Equivalent plastic strain (n,), 0 for a law without plasticity."""
-        history, columns = self._found.history, self.law.columns
+        history, columns = self._law_state.history, self.law.columns
         return history[:, columns.index(PLASTIC_STRAIN)] if PLASTIC_STRAIN in columns else np.zeros(len(history))
 
     def _internal(self, stress: Array) -> Array:
@@ -348,8 +349,8 @@ class Soil:
         return self.cells.weight(self._unit_weight, self.field.size)
 
     def state(self) -> Saved:
-        found, energy = self._found, np.array([self._stored, self._lifted])
-        kept = {"stress": found.stress, "history": found.history, "stored": found.stored, "elastic": found.elastic}
+        update, energy = self._law_state, np.array([self._stored, self._lifted])
+        kept = {"stress": update.stress, "history": update.history, "stored": update.stored, "elastic": update.elastic}
         return {"law/" + name: values for name, values in kept.items()} | {"energy": energy} | self._moved
 
     @property
@@ -362,8 +363,8 @@ class Soil:
         return {name: values.copy() for name, values in kept.items()}
 
     def restore(self, saved: Saved) -> None:
-        self._found, self._last = self._found._replace(**within(saved, "law")), None
-        self._in_balance = self._found.stress
+        self._law_state, self._last = self._law_state._replace(**within(saved, "law")), None
+        self._in_balance = self._law_state.stress
         self._stored, self._lifted = (float(joules) for joules in saved["energy"])
         if self.moves:
             self.cells.make_anew(np.arange(len(self.cells.nodes)), saved["made_at"])
@@ -382,7 +383,7 @@ class _Answer(NamedTuple):
     u: Array
     dt: float
     strain: Array
-    found: StressUpdate
+    update: StressUpdate
     force: Array
 
 

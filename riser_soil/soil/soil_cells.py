@@ -42,8 +42,8 @@ class SoilCells:
     def _volumes_of(self, at: Array, cells: IntArray | slice = slice(None)) -> Array:
         """Volumes of integration points of some cells, all by default, with their nodes at (nc, nn, 3) [m3]."""
         nc, nn, _ = at.shape
-        found = point_volumes(self._family, at.reshape(-1, 3), np.arange(nc * nn).reshape(nc, nn))
-        return found * (self._shares[cells] / self._family.thickness)[:, None]
+        volumes = point_volumes(self._family, at.reshape(-1, 3), np.arange(nc * nn).reshape(nc, nn))
+        return volumes * (self._shares[cells] / self._family.thickness)[:, None]
 
     def _placed_at(self, at: Array) -> _Placed:
         """Cells with their nodes at (nc, nn, 3)."""
@@ -149,8 +149,8 @@ class SoilCells:
 
     def at_points(self, nodal: Array) -> Array:
         """Values (n, ...) of those (nodes, ...) at nodes."""
-        found = np.einsum("qa,ca...->cq...", self._family.values, nodal[self.nodes])
-        return np.asarray(found.reshape(-1, *nodal.shape[1:]))
+        values = np.einsum("qa,ca...->cq...", self._family.values, nodal[self.nodes])
+        return np.asarray(values.reshape(-1, *nodal.shape[1:]))
 
     def slopes(self, nodal: Array) -> Array:
         """Gradients (n, 3) of values (nodes,) at nodes."""

@@ -63,9 +63,9 @@ class PlaceStatistics:
 
     @cached_property
     def _cycles(self) -> Cycles:
-        found = [cycles(self.wanted.sign * x, self.step, self.wanted.sign * self.mean) for x in self.runs]
-        peaks = np.concatenate([each.peaks for each in found])
-        return Cycles(sum(each.number for each in found), sum(each.time for each in found), peaks)
+        counts = [cycles(self.wanted.sign * x, self.step, self.wanted.sign * self.mean) for x in self.runs]
+        peaks = np.concatenate([each.peaks for each in counts])
+        return Cycles(sum(each.number for each in counts), sum(each.time for each in counts), peaks)
 
     @property
     def period(self) -> float:
@@ -80,8 +80,8 @@ class PlaceStatistics:
     @property
     def coarse(self) -> float:
         """Values in a zero-crossing period, where they are fewer than FINE; else 0."""
-        found = self.period / self.step
-        return found if found < FINE else 0.0
+        samples = self.period / self.step
+        return samples if samples < FINE else 0.0
 
     @property
     def expected_peaks(self) -> float:
@@ -93,8 +93,8 @@ class PlaceStatistics:
         """Mean of the runs' spectra; they have one step, and pieces of the shortest run's length."""
         shortest = min(len(x) for x in self.runs)
         segment = shortest * self.step / 8 if self.wanted.segment is None else self.wanted.segment
-        found = [spectrum(x, self.step, min(segment, shortest * self.step)) for x in self.runs]
-        return Spectrum(found[0].frequency, np.mean([each.density for each in found], axis=0))
+        spectra = [spectrum(x, self.step, min(segment, shortest * self.step)) for x in self.runs]
+        return Spectrum(spectra[0].frequency, np.mean([each.density for each in spectra], axis=0))
 
     @property
     def rayleigh(self) -> float:
@@ -108,8 +108,8 @@ class PlaceStatistics:
     @property
     def weibull(self) -> Interval:
         """Value that one of the expected peaks exceeds."""
-        found = self.weibull_fit.largest(self.expected_peaks, self.wanted.confidence)
-        return self._signed(Interval(*(self.wanted.sign * self.mean + h for h in found)))
+        largest = self.weibull_fit.largest(self.expected_peaks, self.wanted.confidence)
+        return self._signed(Interval(*(self.wanted.sign * self.mean + h for h in largest)))
 
     @cached_property
     def maxima(self) -> Array:
@@ -158,12 +158,12 @@ class PlaceStatistics:
     def _of_height(self, height: float) -> float:
         return self.mean + self.wanted.sign * height
 
-    def _signed(self, found: Interval) -> Interval:
+    def _signed(self, interval: Interval) -> Interval:
         """In the output's unit, the lower limit first."""
-        if not np.isfinite(found.value):
+        if not np.isfinite(interval.value):
             return UNKNOWN
-        limits = sorted((self.wanted.sign * found.low, self.wanted.sign * found.high))
-        return Interval(self.wanted.sign * found.value, *limits)
+        limits = sorted((self.wanted.sign * interval.low, self.wanted.sign * interval.high))
+        return Interval(self.wanted.sign * interval.value, *limits)
 
 
 def statistics_of(records: Records, wanted: Wanted) -> list[PlaceStatistics]:

@@ -115,19 +115,19 @@ def _places(runs: Sequence[Run], arcs: Sequence[float] | None) -> Array:
 def _sampled(run: Run, variable: str, component: str, places: Array, stage: str | None, since: float) -> _Sampled:
     number = dynamic_stage(run, stage)
     time = run.time - beginning(run, number)
-    taken = (run["stage"] == number) & (time >= since)
-    if np.count_nonzero(taken) < FEWEST:
+    chosen = (run["stage"] == number) & (time >= since)
+    if np.count_nonzero(chosen) < FEWEST:
         raise ResultsError(
-            f'{run.place}: stage "{run.stage_names[number]}" has {np.count_nonzero(taken)} records from {since:g} s '
+            f'{run.place}: stage "{run.stage_names[number]}" has {np.count_nonzero(chosen)} records from {since:g} s '
             f"on, fewer than {FEWEST}; take a longer stage or a shorter --since"
         )
-    values = _component(run[variable][taken], component)
+    values = _component(run[variable][chosen], component)
     if not np.isnan(places).any():
         values = np.array([np.interp(places, run.arc, row) for row in values])
     values = values.reshape(len(values), -1)
     if not np.isfinite(values).all():
         raise ResultsError(f"{run.place}: {variable} is not known at all times; choose another place or output")
-    return _Sampled(time[taken], values)
+    return _Sampled(time[chosen], values)
 
 
 def _component(values: Array, component: str) -> Array:

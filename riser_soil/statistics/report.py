@@ -24,7 +24,7 @@ class Place(NamedTuple):
 
     records: Records
     arc: float
-    found: PlaceStatistics
+    statistics: PlaceStatistics
 
     @property
     def words(self) -> str:
@@ -44,7 +44,7 @@ def table(places: Sequence[Place], wanted: Wanted) -> list[str]:
         f"{'':{wide}} {'unit':>5} " + " ".join(heads),
     ]
     for place in places:
-        x = place.found
+        x = place.statistics
         numbers = (x.mean, x.deviation, x.least, x.largest, x.period, x.rayleigh)
         columns = [f"{_shown(value):>10}" for value in numbers] + [
             f"{_within(fit):>32}" for fit in (x.weibull, x.gumbel)
@@ -65,9 +65,9 @@ def exceedance_table(places: Sequence[Place], levels: Sequence[float], wanted: W
     ]
     for place in places:
         for level in levels:
-            found = (level, *place.found.exceeded(level).values())
+            row = (level, *place.statistics.exceeded(level).values())
             lines.append(
-                f"{place.words:{wide}} {place.records.units:>5} " + " ".join(f"{_shown(x):>12}" for x in found)
+                f"{place.words:{wide}} {place.records.units:>5} " + " ".join(f"{_shown(x):>12}" for x in row)
             )
     return lines
 
@@ -92,7 +92,7 @@ def refuse_ending(file: Path | None) -> None:
 
 def row_of(place: Place, levels: Sequence[float], wanted: Wanted) -> dict[str, Any]:
     """Names and numbers of a place, in the output's unit but where the name tells another."""
-    x, records = place.found, place.records
+    x, records = place.statistics, place.records
     row: dict[str, Any] = {
         "output": records.name,
         "unit": records.units,
@@ -122,13 +122,13 @@ def row_of(place: Place, levels: Sequence[float], wanted: Wanted) -> dict[str, A
     return row
 
 
-def _columns(name: str, found: Interval) -> dict[str, float]:
-    return {name: found.value, f"{name}_low": found.low, f"{name}_high": found.high}
+def _columns(name: str, interval: Interval) -> dict[str, float]:
+    return {name: interval.value, f"{name}_low": interval.low, f"{name}_high": interval.high}
 
 
 def _curves(place: Place) -> dict[str, Any]:
     """Spectrum, peaks and extremes of blocks, for whoever draws them."""
-    x = place.found
+    x = place.statistics
     return {
         "spectrum": {
             "frequency_Hz": x.spectrum.frequency.tolist(),
@@ -155,17 +155,17 @@ def _shown(value: float) -> str:
     return f"{value:.5g}" if np.isfinite(value) else "-"
 
 
-def _within(found: Interval) -> str:
-    return f"{found.value:.5g} ({found.low:.5g} to {found.high:.5g})" if np.isfinite(found.value) else "-"
+def _within(interval: Interval) -> str:
+    return f"{interval.value:.5g} ({interval.low:.5g} to {interval.high:.5g})" if np.isfinite(interval.value) else "-"
 
 
 def _warnings(places: Sequence[Place]) -> Iterator[str]:
-    coarse = min((place.found.coarse for place in places if place.found.coarse), default=0.0)
+    coarse = min((place.statistics.coarse for place in places if place.statistics.coarse), default=0.0)
     if coarse:
         missed = 1.0 - np.cos(np.pi / coarse)
         yield (
             f"warning: there are only {coarse:.3g} records in a zero-crossing period, so that peaks may be missed by "
             f"{100.0 * missed:.2g} %; record at least {FINE}: a shorter output.interval"
         )
-    if all(len(place.found.maxima) < 3 for place in places):
+    if all(len(place.statistics.maxima) < 3 for place in places):
         yield "Gumbel's distribution needs three maxima or more: give more runs (seeds), or --block SECONDS"

@@ -24,8 +24,8 @@ def compile_kernels(scenes: Mapping[str, Scene], jobs: int) -> Iterator[Outcome]
     with tempfile.TemporaryDirectory(prefix="riser_soil-") as folder:
         runs = Path(folder) / "runs"
         tasks = [task(n, variant_of(shortened(scenes[name])), runs) for n, name in names.items()]
-        with closing(outcomes(tasks, Workers(jobs), lambda: prepare_attempts(runs))) as found:
-            for outcome in found:
+        with closing(outcomes(tasks, Workers(jobs), lambda: prepare_attempts(runs))) as results:
+            for outcome in results:
                 yield replace(outcome, name=names[outcome.name])
 
 

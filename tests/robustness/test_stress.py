@@ -82,33 +82,33 @@ def test_a_process_ends_at_its_limits(tmp_path: Path) -> None:
     assert ended(busy, tmp_path, Limits(cpu=1)).word == "hang"
     assert time.monotonic() - begun < 20.0
     assert ended(greedy, tmp_path, Limits()).word == "traceback"
-    reported = ended(fails, tmp_path, Limits())
-    assert (reported.word, reported.well, reported.output) == ("solve failed", True, "no convergence\n")
+    ending = ended(fails, tmp_path, Limits())
+    assert (ending.word, ending.well, ending.output) == ("solve failed", True, "no convergence\n")
     assert ended(crashes, tmp_path, Limits()).word == "killed by SIGTERM"
 
 
 def test_extremes_of_the_first_scene() -> None:
-    found = {each.name: each for each in extremes(read_scene(FIRST_SCENE))}
-    assert next(iter(found)) == BASE
-    pipe = found["EA times 1000"].scene.line_types["flexible"]
+    variants = {each.name: each for each in extremes(read_scene(FIRST_SCENE))}
+    assert next(iter(variants)) == BASE
+    pipe = variants["EA times 1000"].scene.line_types["flexible"]
     assert pytest.approx(3e11) == pipe.EA
-    coarse = found["time step, 0.1 times as fine"].scene.stages[1]
+    coarse = variants["time step, 0.1 times as fine"].scene.stages[1]
     assert isinstance(coarse, DynamicStage)
     assert coarse.time_step == pytest.approx(1.0)
-    assert all(each.against in (None, "at rest", *found) for each in found.values())
-    assert not [name for name in found if "soil" in name or "penalty" in name], "it has springs alone"
+    assert all(each.against in (None, "at rest", *variants) for each in variants.values())
+    assert not [name for name in variants if "soil" in name or "penalty" in name], "it has springs alone"
 
 
 def test_extremes_of_several_lines() -> None:
-    found = {each.name: each for each in extremes(scene_from_mapping(mooring(shaken())))}
-    wild, still = (found[name].scene.stages[1].lines["east"].motion for name in _MOVED)
+    variants = {each.name: each for each in extremes(scene_from_mapping(mooring(shaken())))}
+    wild, still = (variants[name].scene.stages[1].lines["east"].motion for name in _MOVED)
     assert wild is not None
     assert wild.start is not None
     assert wild.start.harmonic is not None
     assert wild.start.harmonic.amplitude == pytest.approx((10.0, 3.0, 5.0))
     assert still is None
-    assert {line.initial for line in found["gravity 0"].scene.lines.values()} == {"straight"}
-    assert "in three dimensions" not in found, "they are in space already"
+    assert {line.initial for line in variants["gravity 0"].scene.lines.values()} == {"straight"}
+    assert "in three dimensions" not in variants, "they are in space already"
 
 
 def test_loads_that_do_not_stay_leave_no_rest() -> None:
@@ -166,9 +166,9 @@ def test_forces_out_of_balance_are_found(tmp_path: Path) -> None:
     run(scene_from_mapping(scene), tmp_path / "run")
     assert all(answer.holds for answer in bounds(Run(tmp_path / "run")))
     summary = tmp_path / "run" / "summary.json"
-    reported = json.loads(summary.read_text())
-    reported["stages"][0]["final"]["end"]["force"][2] *= 1.01
-    summary.write_text(json.dumps(reported))
+    data = json.loads(summary.read_text())
+    data["stages"][0]["final"]["end"]["force"][2] *= 1.01
+    summary.write_text(json.dumps(data))
     (wrong,) = (answer.what for answer in bounds(Run(tmp_path / "run")) if not answer.holds)
     line_with([wrong], "static:", "vertical forces", "out of balance")
 
@@ -206,9 +206,9 @@ def test_forces_out_of_balance_are_found_on_a_line_of_several(tmp_path: Path) ->
     assert all(answer.holds for answer in judged)
     assert {answer.what.split(": ")[1] for answer in judged[1:]} == {"east"}, "the tie pulls the others"
     summary = tmp_path / "run" / "summary.json"
-    reported = json.loads(summary.read_text())
-    reported["stages"][0]["lines"]["east"]["final"]["start"]["force"][2] *= 1.01
-    summary.write_text(json.dumps(reported))
+    data = json.loads(summary.read_text())
+    data["stages"][0]["lines"]["east"]["final"]["start"]["force"][2] *= 1.01
+    summary.write_text(json.dumps(data))
     assert [answer.holds for answer in bounds(Run(tmp_path / "run"))] == [True, False, True]
 
 
@@ -216,6 +216,6 @@ _HUNG = ("west", "east")
 
 
 def test_the_page_is_that_of_its_figures() -> None:
-    reported = json.loads((ROOT / "docs/stress.json").read_text(encoding="utf-8"))
-    rows = [StressOutcome(**row) for row in reported["cases"]]
-    assert page(rows, reported["made"]) == (ROOT / "docs/stress.md").read_text(encoding="utf-8")
+    data = json.loads((ROOT / "docs/stress.json").read_text(encoding="utf-8"))
+    rows = [StressOutcome(**row) for row in data["cases"]]
+    assert page(rows, data["made"]) == (ROOT / "docs/stress.md").read_text(encoding="utf-8")

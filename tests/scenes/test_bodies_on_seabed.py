@@ -86,8 +86,8 @@ def ran(scene: dict[str, Any], folder: Path) -> Run:
     return Run(folder)
 
 
-def force_under(found: Run, body: str) -> np.ndarray:
-    return np.asarray(found[f"bodies/{body}/contact_force"][-1])
+def force_under(run: Run, body: str) -> np.ndarray:
+    return np.asarray(run[f"bodies/{body}/contact_force"][-1])
 
 
 def lying(span: float, length: float, height: float) -> float:
@@ -106,14 +106,14 @@ def lying(span: float, length: float, height: float) -> float:
 def test_a_clump_between_two_chains_that_lie_on_the_bed(tmp_path: Path) -> None:
     """Top tensions are those of chains that end in a lying part, H + w h; the clump rests with all of its weight."""
     span, length, height = 50.0, 66.0, DEPTH - 0.5 * CHAIN["outer_diameter"]
-    found = ran(between_chains(span=span, length=length, contact=LIES, elements=60), tmp_path)
+    run = ran(between_chains(span=span, length=length, contact=LIES, elements=60), tmp_path)
     H = lying(span, length, height)
     for name, top in (("left", 0), ("right", -1)):
-        tension = found.of_line(name)["effective_tension"][-1]
+        tension = run.of_line(name)["effective_tension"][-1]
         assert tension[top] == pytest.approx(H + WET * height, rel=1e-3)
         assert tension[top] - tension[-1 - top] == pytest.approx(WET * height, rel=1e-3)
-    assert force_under(found, "clump") == pytest.approx([0.0, 0.0, NET], rel=1e-3, abs=1.0)
-    x, y, z = found["bodies/clump/position"][-1]
+    assert force_under(run, "clump") == pytest.approx([0.0, 0.0, NET], rel=1e-3, abs=1.0)
+    x, y, z = run["bodies/clump/position"][-1]
     assert (x, y) == pytest.approx((0.0, 0.0), abs=1e-6)
     assert z == pytest.approx(LIES["radius"] - DEPTH - NET / LIES["stiffness"], abs=5e-4)
 
@@ -125,14 +125,14 @@ def test_a_clump_that_taut_chains_lift_in_part(tmp_path: Path) -> None:
     """
     scene = between_chains(span=50.0, length=LONG)
     scene["bodies"]["clump"]["position"] = [0.0, 0.0, -DEPTH - 0.3]
-    found = ran(scene, tmp_path)
-    place, pressed = found["bodies/clump/position"][-1], force_under(found, "clump")
+    run = ran(scene, tmp_path)
+    place, pressed = run["bodies/clump/position"][-1], force_under(run, "clump")
     _, top = pulls(np.array([0.0, place[2]]), np.array([50.0, 0.0]), WET, CHAIN["EA"], LONG)
     lifted = WET * LONG + top[1]  # what the top does not bear
     assert lifted < -1.0e3
     assert pressed == pytest.approx([0.0, 0.0, NET + 2.0 * lifted], rel=2e-3, abs=1.0)
     radius = (3.0 * 0.5 / (4.0 * math.pi)) ** (1.0 / 3.0)
-    sunk = found["bodies/clump/penetration"][-1]
+    sunk = run["bodies/clump/penetration"][-1]
     assert pressed[2] == pytest.approx(BED * 2.0 * radius * sunk, rel=1e-6)
     assert place[2] == pytest.approx(radius - sunk - DEPTH, abs=1e-9)
 
@@ -153,16 +153,16 @@ def test_friction_holds_a_body_on_a_slope_below_its_angle(tmp_path: Path) -> Non
         "contact": {"friction": {"axial": 0.1, "mobilisation": 1.0e-6}},
     }
     bodies = {"held": ball(0.0, 0.30), "slides": ball(5.0, 0.20), "smooth": ball(-5.0, 0.0)}
-    found = ran(let_go(bodies, duration, 0.005, **ground), tmp_path)
+    run = ran(let_go(bodies, duration, 0.005, **ground), tmp_path)
     for name, mu in (("slides", 0.2), ("smooth", 0.0)):
-        way = found[f"bodies/{name}/position"][-1] - found[f"bodies/{name}/position"][0]
+        way = run[f"bodies/{name}/position"][-1] - run[f"bodies/{name}/position"][0]
         slid = 0.5 * G * (math.sin(angle) - mu * math.cos(angle)) * duration**2
         assert float(np.linalg.norm(way)) == pytest.approx(slid, rel=0.03), name
-        along = force_under(found, name) @ [math.cos(angle), 0.0, math.sin(angle)]
+        along = force_under(run, name) @ [math.cos(angle), 0.0, math.sin(angle)]
         assert along == pytest.approx(mu * HEAVY * G * math.cos(angle), rel=0.01, abs=1.0)
-    held = found["bodies/held/position"]
-    assert float(np.linalg.norm(held[-1] - held[0])) < 2.0e-6
-    energy = found.summary["stages"][0]["energy"]
+    positions = run["bodies/held/position"]
+    assert float(np.linalg.norm(positions[-1] - positions[0])) < 2.0e-6
+    energy = run.summary["stages"][0]["energy"]
     assert energy["dissipated_by"]["body_friction"] > 0.0
     assert abs(energy["relative_residual"]) < 1e-6
 
@@ -178,17 +178,17 @@ def test_bodies_that_fall_onto_the_bed_come_to_rest_and_no_energy_is_made(tmp_pa
     humps.write_text("x [m],y [m],z [m]\n" + "\n".join(rows) + "\n")
     rough = {"friction": {"axial": 0.5, "mobilisation": 1.0e-4}}
     ground = {"seabed": {"kind": "rigid", "grid": str(humps)}, "contact": rough}
-    found = ran(let_go({"ball": ball, "sled": sled}, 4.0, 0.01, **ground), tmp_path / "run")
+    run = ran(let_go({"ball": ball, "sled": sled}, 4.0, 0.01, **ground), tmp_path / "run")
     radius = (3.0 * 0.1 / (4.0 * math.pi)) ** (1.0 / 3.0)
-    assert found["bodies/ball/position"][-1][2] == pytest.approx(radius, abs=2e-3)
+    assert run["bodies/ball/position"][-1][2] == pytest.approx(radius, abs=2e-3)
     for name, mass in (("ball", 200.0), ("sled", 500.0)):
-        assert force_under(found, name)[2] == pytest.approx(mass * G, rel=1e-3), name
-        assert np.abs(found[f"bodies/{name}/velocity"][-1]).max() < 1e-3
-    assert np.abs(found["bodies/sled/rotation"][-1]).max() > 0.02  # it stands on the step
-    total = found["kinetic_energy"] + found["strain_energy"] + found["potential_energy"]
+        assert force_under(run, name)[2] == pytest.approx(mass * G, rel=1e-3), name
+        assert np.abs(run[f"bodies/{name}/velocity"][-1]).max() < 1e-3
+    assert np.abs(run["bodies/sled/rotation"][-1]).max() > 0.02  # it stands on the step
+    total = run["kinetic_energy"] + run["strain_energy"] + run["potential_energy"]
     start = float(total[0])
     assert (total - np.minimum.accumulate(total)).max() < 1e-5 * start  # the scheme's own, of the rope that swings
-    energy = found.summary["stages"][0]["energy"]
+    energy = run.summary["stages"][0]["energy"]
     assert energy["dissipated_by"]["body_contact_time_scheme"] > 0.5 * 200.0 * G
     assert abs(energy["relative_residual"]) < 1e-3
 
@@ -209,9 +209,9 @@ def test_a_run_goes_on_from_its_checkpoint_with_what_clay_and_friction_remember(
     run(scene, tmp_path / "whole")
     leave_after(20, scene, tmp_path / "left")
     run(scene, tmp_path / "left", restart=True)
-    whole, left = Run(tmp_path / "whole"), Run(tmp_path / "left")
+    whole, resumed = Run(tmp_path / "whole"), Run(tmp_path / "left")
     for key in ("position", "contact_force", "penetration"):
-        assert np.array_equal(whole[f"bodies/clump/{key}"], left[f"bodies/clump/{key}"]), key
+        assert np.array_equal(whole[f"bodies/clump/{key}"], resumed[f"bodies/clump/{key}"]), key
     assert np.ptp(whole["bodies/clump/contact_force"][:, 0]) > 10.0  # it is dragged
 
 
@@ -253,22 +253,22 @@ def contact_of(scene: dict[str, Any]) -> BodyContact:
 def test_sizes_that_are_not_given_follow_from_volume_mass_and_lines() -> None:
     sphere = (3.0 * 0.5 / (4.0 * math.pi)) ** (1.0 / 3.0)
     scene = between_chains(span=50.0, length=LONG)
-    found = contact_of(scene)
-    assert (found.radius, found.length) == pytest.approx((sphere, 2.0 * sphere))
+    contacts = contact_of(scene)
+    assert (contacts.radius, contacts.length) == pytest.approx((sphere, 2.0 * sphere))
     assert contact_of(scene | {"seabed": scene["seabed"] | {"contact_at": "axis"}}).radius == 0.0
     rigid = contact_of(scene | {"seabed": {"kind": "rigid", "level": -DEPTH}})
     assert rigid.sunk_by(4000.0 * G) == pytest.approx(2e-3 * sphere, rel=0.02)
     scene["bodies"]["clump"]["volume"] = 0.0
-    found = contact_of(scene)
-    assert found.radius == pytest.approx(0.5 * CHAIN["outer_diameter"])
-    assert found.length == pytest.approx((6.0 * 4000.0 / (math.pi * 1025.0)) ** (1.0 / 3.0))
+    contacts = contact_of(scene)
+    assert contacts.radius == pytest.approx(0.5 * CHAIN["outer_diameter"])
+    assert contacts.length == pytest.approx((6.0 * 4000.0 / (math.pi * 1025.0)) ** (1.0 / 3.0))
 
 
 def test_check_says_how_bodies_touch_and_warns_of_those_that_sink() -> None:
     scene = between_chains(span=50.0, length=LONG, contact={"stiffness": 1.0e5, "friction": 0.5})
-    told = line_with(describe(scene_from_mapping(scene)).splitlines(), "body clump: touches")
-    assert f"sinks in by {NET / 1.0e5:.3f}"[:18] in told
-    assert "friction coefficient 0.5" in told
+    line = line_with(describe(scene_from_mapping(scene)).splitlines(), "body clump: touches")
+    assert f"sinks in by {NET / 1.0e5:.3f}"[:18] in line
+    assert "friction coefficient 0.5" in line
     soft = between_chains(span=50.0, length=LONG, contact={"stiffness": 1.0e4})
     warned = line_with(physical_warnings(build(scene_from_mapping(soft), MPI.COMM_SELF)), "bodies.clump.contact")
     assert f"{NET:.4g} N" in warned

@@ -26,31 +26,31 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def found(results: Path) -> Found:
+def forces_of(results: Path) -> Found:
     """Table 1's quantities by weight and number of elements."""
     return {(w, n): table1(hanging(results, n, w)) for w in WEIGHTS for n in (COARSE, FINE)}
 
 
 @pytest.mark.parametrize("row", published(), ids=lambda row: row.name)
-def test_published_values_with_the_implied_weight(found: Found, row: Published) -> None:
-    apart = {name: abs(found[IMPLIED, FINE][name] - row.values[name]) for name in COLUMNS}
+def test_published_values_with_the_implied_weight(forces_of: Found, row: Published) -> None:
+    apart = {name: abs(forces_of[IMPLIED, FINE][name] - row.values[name]) for name in COLUMNS}
     assert {name: value for name, value in apart.items() if value > row.tolerance[name]} == {}
 
 
 @pytest.mark.parametrize("row", published(), ids=lambda row: row.name)
-def test_the_stated_weight_misses_the_published_forces(found: Found, row: Published) -> None:
-    missed = {name for name in COLUMNS if abs(found[STATED, FINE][name] - row.values[name]) > row.tolerance[name]}
+def test_the_stated_weight_misses_the_published_forces(forces_of: Found, row: Published) -> None:
+    missed = {name for name in COLUMNS if abs(forces_of[STATED, FINE][name] - row.values[name]) > row.tolerance[name]}
     assert missed >= {"V1", "V2", "H1", "H2"}
 
 
-def test_forces_scale_with_the_weight_and_angles_do_not_change(found: Found) -> None:
-    implied, stated = found[IMPLIED, FINE], found[STATED, FINE]
+def test_forces_scale_with_the_weight_and_angles_do_not_change(forces_of: Found) -> None:
+    implied, stated = forces_of[IMPLIED, FINE], forces_of[STATED, FINE]
     scale = {name: 1.0 if name.startswith("theta") else 364.2 / 346.107 for name in COLUMNS}
     assert implied == pytest.approx({name: scale[name] * stated[name] for name in COLUMNS}, rel=2e-4)
 
 
-def test_horizontal_reactions_balance(found: Found) -> None:
-    assert max(abs(values["H2"] / values["H1"] - 1.0) for values in found.values()) < ROUND_OFF
+def test_horizontal_reactions_balance(forces_of: Found) -> None:
+    assert max(abs(values["H2"] / values["H1"] - 1.0) for values in forces_of.values()) < ROUND_OFF
 
 
 @pytest.mark.parametrize("weight", WEIGHTS)

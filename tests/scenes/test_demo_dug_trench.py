@@ -19,8 +19,8 @@ OWN = {"title", "initial", "stages", "output"}
 def column(name: str, row: str, cell: int) -> tuple[float, float]:
     """A value of a table on the page, and its bar."""
     lines = (line.split("|")[1:-1] for line in block(TEXT, name).splitlines()[2:])
-    found = {first.strip(): others for first, *others in lines}[row][cell]
-    value, _, bar = found.partition("±")
+    cells = {first.strip(): others for first, *others in lines}[row][cell]
+    value, _, bar = cells.partition("±")
     return float(value), float(bar)
 
 
@@ -39,8 +39,8 @@ def test_the_second_storm_finds_the_trench_of_the_first() -> None:
 
 @pytest.mark.verify
 def test_page_shows_the_riser_as_laid(tmp_path: Path) -> None:
-    found = Storms({"laid": compute(SCENES["laid"], tmp_path / "laid")}).depth("laid")
-    assert column("depth", "deepest [mm]", 0)[0] == pytest.approx(found, rel=0.01)
+    depth = Storms({"laid": compute(SCENES["laid"], tmp_path / "laid")}).depth("laid")
+    assert column("depth", "deepest [mm]", 0)[0] == pytest.approx(depth, rel=0.01)
 
 
 @pytest.mark.parametrize("target", sorted(set(re.findall(r"\]\(([^)#]+)\)", TEXT))))

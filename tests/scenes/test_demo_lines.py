@@ -18,7 +18,7 @@ DEMO = Path(__file__).parents[2] / "demos" / "lines"
 SHORT = ("stages.1.duration=0.5",)
 
 
-def told() -> dict[tuple[str, int], tuple[float, float]]:
+def page_figures() -> dict[tuple[str, int], tuple[float, float]]:
     """Of the page, by line and end: a run's tension and the catenaries' [kN]."""
     rows = [line.split("|") for line in block((DEMO / "README.md").read_text(), "tensions").splitlines() if "`" in line]
     names = [row[1].strip().split("`, ") for row in rows]
@@ -28,11 +28,11 @@ def told() -> dict[tuple[str, int], tuple[float, float]]:
 
 def test_the_lazy_s_has_the_pages_tensions(tmp_path: Path) -> None:
     run(read_scene(DEMO / "lazy_s.yaml", SHORT), tmp_path)
-    found, catenaries = Run(tmp_path), lazy_s_by_catenaries()[1]
-    page = told()
+    computed, catenaries = Run(tmp_path), lazy_s_by_catenaries()[1]
+    page = page_figures()
     assert len(page) == 2 * len(LAZY_S)
     for (name, end), (tension, reference) in page.items():
-        assert found.of_line(name)["effective_tension"][0, -end] == pytest.approx(1e3 * tension, rel=1e-3)
+        assert computed.of_line(name)["effective_tension"][0, -end] == pytest.approx(1e3 * tension, rel=1e-3)
         assert catenaries[name][end] == pytest.approx(1e3 * reference, rel=1e-3)
         assert tension == pytest.approx(reference, rel=0.01)
 
@@ -64,9 +64,9 @@ def test_the_lazy_s_on_clay_is_built_without_a_warning() -> None:
 )
 def test_nothing_leaves_the_plane_of_lines_that_keep_to_one(path: str, value: str) -> None:
     slope = ("seabed.slope_deg=1.0",) if path.startswith("seabed") else ()
-    with pytest.raises(SceneError, match="leaves the lines' plane along x, but dimension is 2") as found:
+    with pytest.raises(SceneError, match="leaves the lines' plane along x, but dimension is 2") as refused:
         read_scene(DEMO / "lazy_s_on_clay.yaml", (*slope, f"{path}={value}"))
-    assert path.split(".")[1] in str(found.value)
+    assert path.split(".")[1] in str(refused.value)
 
 
 @pytest.mark.verify
@@ -75,8 +75,8 @@ def test_half_of_the_clay_bears_lines_in_a_plane_as_all_of_it_does(tmp_path: Pat
 
     There friction keeps the pipe from sliding to a side, which round-off would choose.
     """
-    held = "contact.friction={axial: 1.0e-6, lateral: 0.3}"
-    ways = {"half": (), "all": ("soil.symmetry=whole",), "held": (held,), "space": ("dimension=3", held)}
+    friction = "contact.friction={axial: 1.0e-6, lateral: 0.3}"
+    ways = {"half": (), "all": ("soil.symmetry=whole",), "held": (friction,), "space": ("dimension=3", friction)}
     ran = {}
     for way, overrides in ways.items():
         run(read_scene(DEMO / "lazy_s_on_clay.yaml", (*overrides, "stages.1.duration=1.0")), tmp_path / way)
@@ -84,9 +84,9 @@ def test_half_of_the_clay_bears_lines_in_a_plane_as_all_of_it_does(tmp_path: Pat
     half = ran["half"]
     for one, other in ((half, ran["all"]), (ran["held"], ran["space"])):
         for stage in (0, 1):
-            known, found = (each.of_line("lower").summary["stages"][stage] for each in (one, other))
-            assert found["final"]["contact_force"] == pytest.approx(known["final"]["contact_force"], rel=1e-7)
-            assert found["soil"]["max_settlement"]["value"] == pytest.approx(
+            known, computed = (each.of_line("lower").summary["stages"][stage] for each in (one, other))
+            assert computed["final"]["contact_force"] == pytest.approx(known["final"]["contact_force"], rel=1e-7)
+            assert computed["soil"]["max_settlement"]["value"] == pytest.approx(
                 known["soil"]["max_settlement"]["value"], rel=2e-6
             )
     assert 2 * half.summary["dofs"]["soil"] == ran["all"].summary["dofs"]["soil"]

@@ -22,13 +22,13 @@ SHORT = "stages.1.duration=5.0"  # s: the ramp of the waves has begun
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[Found, Found]]:
     """At each offset what is found by it, and by a stage that moves the end."""
-    folder, found = tmp_path_factory.mktemp("offsets"), {}
+    folder, results = tmp_path_factory.mktemp("offsets"), {}
     with redirect_stdout(StringIO()):
         hung, _ = in_numbers(read_scene(SCENE, [SHORT]))
     for name, offset in OFFSETS.items():
         scene = read_scene(SCENE, [SHORT, f"vessel.offset.0={offset}"])
-        found[name] = computed(scene, folder / name), computed(by_move(hung, offset), folder / f"{name}_by_move")
-    return found
+        results[name] = computed(scene, folder / name), computed(by_move(hung, offset), folder / f"{name}_by_move")
+    return results
 
 
 def laid(name: str) -> tuple[LaidCable, float]:
@@ -45,10 +45,10 @@ def test_an_offset_is_a_move_of_the_vessel(runs: dict[str, tuple[Found, Found]],
 
 @pytest.mark.parametrize("name", [*OFFSETS])
 def test_it_hangs_as_a_cable(runs: dict[str, tuple[Found, Found]], name: str) -> None:
-    found, (cable, H) = runs[name][0], laid(name)
-    assert found.tension == pytest.approx(cable.top_tension(H), rel=2e-3)
-    assert found.moment == pytest.approx(cable.moment(H), rel=0.02)
-    assert cable.touchdown(H) - found.touchdown == pytest.approx((cable.EI / H) ** 0.5, abs=2.0)
+    run, (cable, H) = runs[name][0], laid(name)
+    assert run.tension == pytest.approx(cable.top_tension(H), rel=2e-3)
+    assert run.moment == pytest.approx(cable.moment(H), rel=0.02)
+    assert cable.touchdown(H) - run.touchdown == pytest.approx((cable.EI / H) ** 0.5, abs=2.0)
 
 
 def test_near_bends_it_most(runs: dict[str, tuple[Found, Found]]) -> None:
@@ -61,9 +61,9 @@ def test_the_pages_have_what_is_found(runs: dict[str, tuple[Found, Found]], page
     rows = block(page.read_text(encoding="utf-8"), "offsets").splitlines()[2:]
     for name, row in zip(OFFSETS, rows, strict=True):
         place, *cells = (cell.strip() for cell in row.strip("| ").split("|"))
-        shown, found, (cable, H) = [float(cell) for cell in cells], runs[name][0], laid(name)
-        expected = [found.tension, cable.top_tension(H), found.touchdown, cable.touchdown(H)]
-        expected += [found.moment, cable.moment(H), found.moment]
+        shown, run, (cable, H) = [float(cell) for cell in cells], runs[name][0], laid(name)
+        expected = [run.tension, cable.top_tension(H), run.touchdown, cable.touchdown(H)]
+        expected += [run.moment, cable.moment(H), run.moment]
         expected = [1e-3 * value if n not in (2, 3) else value for n, value in enumerate(expected)]
         assert place.startswith(name)
         assert shown[:7] == pytest.approx(expected, abs=0.06)

@@ -103,14 +103,14 @@ def test_the_tangent_is_the_stress_s_derivative() -> None:
     rng, history, flowed = np.random.default_rng(4), law.start(), 0
     for _ in range(12):
         increment = rng.normal(scale=3e-3, size=(2, 6))
-        found, slopes = law.update(increment, history), np.empty((2, 6, 6))
+        update, slopes = law.update(increment, history), np.empty((2, 6, 6))
         for j in range(6):
             ahead, behind = (law.update(increment + h * np.eye(6)[j], history).stress for h in (1e-8, -1e-8))
             slopes[:, :, j] = (ahead - behind) / 2e-8
-        np.testing.assert_allclose(found.tangent, slopes, atol=1e-5 * float(found.tangent.max()))
-        softer = mandel.DEVIATOR @ (found.tangent - mandel.stiffness(np.zeros(2), law.shear)) @ mandel.DEVIATOR
+        np.testing.assert_allclose(update.tangent, slopes, atol=1e-5 * float(update.tangent.max()))
+        softer = mandel.DEVIATOR @ (update.tangent - mandel.stiffness(np.zeros(2), law.shear)) @ mandel.DEVIATOR
         flowed += int(np.abs(softer).max() > 0.1 * law.shear.max())
-        history = found.history
+        history = update.history
     assert flowed > 5
 
 
@@ -140,8 +140,8 @@ def test_the_page_s_energy_softens_in_shear_alone(tmp_path: Path) -> None:
 
 
 def test_the_material_command_drives_the_page_s_law(tmp_path: Path) -> None:
-    told = study(Scene.from_file(HERE / "scene.yaml").model, tmp_path / "point")
-    line_with(told, "imported at a depth of 0.75 m", "gamma_xz")
+    results = study(Scene.from_file(HERE / "scene.yaml").model, tmp_path / "point")
+    line_with(results, "imported at a depth of 0.75 m", "gamma_xz")
     assert (tmp_path / "point" / "material.csv").is_file()
 
 
@@ -162,7 +162,7 @@ def test_a_pipe_meets_the_resistance_of_clay_of_the_same_strength() -> None:
     scene = Scene.from_file(HERE / "scene.yaml")
     shown = [line.split("|")[1:-1] for line in block(PAGE.read_text(encoding="utf-8"), "resistance").splitlines()[2:]]
     table = {name.strip(): [float(x) for x in numbers] for name, *numbers in shown}
-    found = resistance(scene) / strength(scene)[0]
-    assert found == pytest.approx(table["my_clay.py"], abs=0.006)
-    assert found == pytest.approx(table["von-mises of the same su"], rel=0.01)
-    assert found[-1] == pytest.approx(5.3 * 0.1**0.25, rel=0.03)
+    factor = resistance(scene) / strength(scene)[0]
+    assert factor == pytest.approx(table["my_clay.py"], abs=0.006)
+    assert factor == pytest.approx(table["von-mises of the same su"], rel=0.01)
+    assert factor[-1] == pytest.approx(5.3 * 0.1**0.25, rel=0.03)

@@ -43,9 +43,9 @@ def test_the_scene_follows_the_demo_s_path(tmp_path: Path) -> None:
 @pytest.mark.verify
 def test_page_shows_capacities_as_computed() -> None:
     shown, name = rows(block(PAGE, "capacity")), "cells of D/16"
-    found = rows(capacity_page({name: coarse()}))
-    assert all(shown[formula] == found[formula] for formula in FORMULAS)
-    numbers = [[float(x) for x in table[f"segment, {name}"]] for table in (shown, found)]
+    computed = rows(capacity_page({name: coarse()}))
+    assert all(shown[formula] == computed[formula] for formula in FORMULAS)
+    numbers = [[float(x) for x in table[f"segment, {name}"]] for table in (shown, computed)]
     assert numbers[0] == pytest.approx(numbers[1], rel=0.01, abs=0.01)
 
 
@@ -68,13 +68,13 @@ def test_resistance_never_falls_down_to_a_quarter_of_the_diameter(cells: tuple[s
 
 
 def test_what_was_found_covers_what_was_behind_the_curves() -> None:
-    for name, (truth, found, interval, _) in rows(block(PAGE, "fits")).items():
+    for name, (truth, fit, interval, _) in rows(block(PAGE, "fits")).items():
         low, high = map(float, interval.split(" to "))
-        assert low <= float(found) <= high
+        assert low <= float(fit) <= high
         if name.startswith("the model's own"):
             assert low <= float(truth) <= high
         if "su`" in name and name.startswith("the model's own"):
-            assert float(found) == pytest.approx(float(truth), rel=0.02)
+            assert float(fit) == pytest.approx(float(truth), rel=0.02)
     assert NOISE == 0.05
 
 
@@ -86,10 +86,10 @@ def test_link(target: str) -> None:
 @pytest.mark.verify
 def test_page_shows_stiffnesses_as_computed() -> None:
     path = demo_path()
-    shown, found = rows(block(PAGE, "stiffness")), rows(stiffness_page(path.w, resistance(path)))
-    assert shown.keys() == found.keys()
+    shown, computed = rows(block(PAGE, "stiffness")), rows(stiffness_page(path.w, resistance(path)))
+    assert shown.keys() == computed.keys()
     for name in shown:
-        numbers = [[float(x) for x in table[name]] for table in (shown, found)]
+        numbers = [[float(x) for x in table[name]] for table in (shown, computed)]
         assert numbers[0] == pytest.approx(numbers[1], rel=0.02, abs=1.0)
 
 

@@ -75,8 +75,8 @@ def test_page_shows_the_penalty_as_computed() -> None:
 
 def test_page_shows_the_mesh_s_error_as_computed(tmp_path: Path) -> None:
     (shown,) = (row for row in rows("at_rest_mesh") if row[:3] == ["line", "1e+06", "100"])
-    found = at_rest(tmp_path, 100, 1e6).errors(reference()[1][1e6])
-    assert [float(cell) for cell in shown[3:]] == pytest.approx(list(found), rel=0.1)
+    errors = at_rest(tmp_path, 100, 1e6).errors(reference()[1][1e6])
+    assert [float(cell) for cell in shown[3:]] == pytest.approx(list(errors), rel=0.1)
 
 
 @pytest.mark.parametrize("target", sorted(set(re.findall(r"\]\(([^)#]+)\)", PAGE))))

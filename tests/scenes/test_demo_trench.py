@@ -26,18 +26,18 @@ def shown() -> dict[str, list[str]]:
 def test_page_shows_rest_as_computed(column: int, overrides: tuple[str, ...], tmp_path: Path) -> None:
     """The touchdown point within half an element: gmsh's versions make other tetrahedra, which moves it by 0.14 m."""
     computed = rows(compute(SCENE, tmp_path / "run", *overrides).summary["stages"])
-    found = {name: float(value) for name, value in computed.items()}
-    page = {name: float(shown()[name][column]) for name in found}
-    assert page.pop(TOUCHDOWN) == pytest.approx(found.pop(TOUCHDOWN), abs=0.25)
-    assert page == pytest.approx(found, rel=0.005)
+    values = {name: float(value) for name, value in computed.items()}
+    page = {name: float(shown()[name][column]) for name in values}
+    assert page.pop(TOUCHDOWN) == pytest.approx(values.pop(TOUCHDOWN), abs=0.25)
+    assert page == pytest.approx(values, rel=0.005)
 
 
 @pytest.mark.verify
 def test_page_tells_what_the_edges_do(tmp_path: Path) -> None:
     """Within what other tetrahedra change."""
-    told = places(TEXT)
+    figures = places(TEXT)
     for name, value in edges(compute(SCENE, tmp_path, STATIC)).items():
-        assert [float(each) for each in told[name]] == [pytest.approx(float(value), rel=0.15, abs=0.11)]
+        assert [float(each) for each in figures[name]] == [pytest.approx(float(value), rel=0.15, abs=0.11)]
 
 
 def test_the_riser_touches_down_later_in_the_trench() -> None:

@@ -21,12 +21,12 @@ PAGE = (HERE / "README.md").read_text(encoding="utf-8")
 
 
 def test_still_riser_hangs_like_a_cable(tmp_path: Path) -> None:
-    found = list(checks.at_rest(compute(SCENE, tmp_path, *STILL)))
-    assert len(found) == 3
-    for name, _, value, expected in found:
+    rows = list(checks.at_rest(compute(SCENE, tmp_path, *STILL)))
+    assert len(rows) == 3
+    for name, _, value, expected in rows:
         assert value == pytest.approx(expected, rel=1e-3), name
     shown = [float(line.split("|")[2]) for line in block(PAGE, "checks").splitlines()[2:5]]
-    assert shown == pytest.approx([value for _, _, value, _ in found], rel=1e-3)
+    assert shown == pytest.approx([value for _, _, value, _ in rows], rel=1e-3)
 
 
 def test_table_of_responses_is_what_its_script_writes() -> None:
@@ -50,20 +50,20 @@ def test_spectrum_holds_the_significant_height() -> None:
 def test_turret_follows_the_waves_one_by_one(tmp_path: Path) -> None:
     """After the ramp; what remains is the table's interpolation, and what is of second order in angles."""
     run = compute(SCENE, tmp_path, "stages.1.duration=60.0", *FEW_ELEMENTS)
-    seen = run.time > 26.0
-    moved = (run["position"][seen, -1] - run["position"][0, -1]).T
-    expected = checks.answer(run.time[seen])
+    window = run.time > 26.0
+    moved = (run["position"][window, -1] - run["position"][0, -1]).T
+    expected = checks.answer(run.time[window])
     assert np.abs(moved - expected).max(axis=1) == pytest.approx(np.zeros(3), abs=0.02 * expected.std(axis=1).max())
 
 
 @pytest.mark.verify
 def test_the_storm_is_the_page_s(tmp_path: Path) -> None:
     run = compute(SCENE, tmp_path)
-    found = list(checks.in_waves(run, SINCE))
-    for name, _, value, expected in found:
+    rows = list(checks.in_waves(run, SINCE))
+    for name, _, value, expected in rows:
         assert value == pytest.approx(expected, rel=0.01 if "this sea" in name else 0.2), name
     shown = [float(line.split("|")[2]) for line in block(PAGE, "checks").splitlines()[5:]]
-    assert shown == pytest.approx([value for _, _, value, _ in found], rel=1e-3)
+    assert shown == pytest.approx([value for _, _, value, _ in rows], rel=1e-3)
     (row,) = (row for row in block(PAGE, "extremes").splitlines() if row.startswith(f"| {run.arc.size - 1} | 0.2 |"))
     assert [float(cell) for cell in row.split("|")[4:11]] == pytest.approx([*extremes(run).values()], rel=1e-3)
 

@@ -23,7 +23,7 @@ LIST = ROOT / "docs" / "README.md"
 PLACES = "riser_soil|tests|demos|docker|benchmarks|meshes|scripts|requirements"
 
 
-def found(pattern: str, pages: list[Path]) -> list[Any]:
+def matches_in(pattern: str, pages: list[Path]) -> list[Any]:
     """What a pattern with one group finds in pages, each once: page and finding."""
     return [
         pytest.param(page, what, id=f"{page.relative_to(ROOT)}: {what}")
@@ -57,7 +57,7 @@ def anchors(page: Path) -> set[str]:
     return {re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
-@pytest.mark.parametrize(("page", "target"), found(r"\]\(([^)]+)\)", [*PAGES, *DEMOS]))
+@pytest.mark.parametrize(("page", "target"), matches_in(r"\]\(([^)]+)\)", [*PAGES, *DEMOS]))
 def test_link(page: Path, target: str) -> None:
     path, _, anchor = target.partition("#")
     place = (page.parent / path).resolve() if path else page
@@ -65,7 +65,7 @@ def test_link(page: Path, target: str) -> None:
     assert not anchor or anchor in anchors(place)
 
 
-@pytest.mark.parametrize(("page", "link"), found(r"\[(test_\w+\]\([^)]+)\)", [*PAGES, *DEMOS]))
+@pytest.mark.parametrize(("page", "link"), matches_in(r"\[(test_\w+\]\([^)]+)\)", [*PAGES, *DEMOS]))
 def test_a_test_that_is_named_is_there(page: Path, link: str) -> None:
     """A link whose text is a test's name leads to the file that has it."""
     name, path = link.split("](")
@@ -79,7 +79,7 @@ def test_each_case_of_validation_names_its_test() -> None:
     assert [row for row in cases if "| [test_" not in row] == []
 
 
-@pytest.mark.parametrize(("page", "path"), found(rf"`((?:{PLACES})/[\w/.]*)`", PAGES))
+@pytest.mark.parametrize(("page", "path"), matches_in(rf"`((?:{PLACES})/[\w/.]*)`", PAGES))
 def test_path(page: Path, path: str) -> None:
     assert (ROOT / path).exists() or path == "demos/touchdown_clay/results"
 

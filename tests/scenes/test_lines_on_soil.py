@@ -90,9 +90,9 @@ def test_all_weight_is_borne(tmp_path: Path) -> None:
         own = build(scene_from_mapping(hung_over_clay()), MPI.COMM_SELF).lines[name]
         weight += float(own.elements.weight @ own.elements.length)
         up += float(line["contact_force_sum"][at, 2])
-    held = hung.of_line("lower")["start_force"][at, 2] + hung.of_line("upper")["end_force"][at, 2]
+    borne = hung.of_line("lower")["start_force"][at, 2] + hung.of_line("upper")["end_force"][at, 2]
     buoy = (1.8 * RHO - 300.0) * G
-    assert up + held + buoy == pytest.approx(weight, rel=3e-4)
+    assert up + borne + buoy == pytest.approx(weight, rel=3e-4)
     assert np.nanmax(hung.of_line("lower")["soil_settlement"][at]) > 1e-3
     assert up > 0.2 * weight
 
@@ -128,8 +128,8 @@ def test_two_ranks_find_the_same_on_soil(model: str, tmp_path: Path) -> None:
     for line in ("lower", "upper"):
         for name in COMPARED:
             values = one.of_line(line)[name]
-            found = other.of_line(line)[name]
-            np.testing.assert_allclose(found, values, rtol=0.0, atol=2e-6 * np.abs(values).max(), err_msg=name)
+            value = other.of_line(line)[name]
+            np.testing.assert_allclose(value, values, rtol=0.0, atol=2e-6 * np.abs(values).max(), err_msg=name)
     for name in ("bodies/buoy/position", "joints/lower_hung/force"):
         np.testing.assert_allclose(other[name], one[name], rtol=0.0, atol=2e-6 * np.abs(one[name]).max())
 

@@ -114,12 +114,12 @@ TOLD = [
 @pytest.mark.parametrize(("page", "name"), TOLD)
 def test_figures_of_quick_scenes(page: Path, name: str, figures: Texts) -> None:
     """What the pages tell is what the scenes give; `make figures` writes it anew."""
-    for told in places(page.read_text(encoding="utf-8"))[name]:
-        assert same_figures(told, figures[name]), f"{told} is told of {name}, and runs give {figures[name]}"
+    for sentence in places(page.read_text(encoding="utf-8"))[name]:
+        assert same_figures(sentence, figures[name]), f"{sentence} is told of {name}, and runs give {figures[name]}"
 
 
 def test_all_figures_of_quick_scenes_are_told(figures: Texts) -> None:
-    told = {name for page in all_pages() for name in places(page.read_text(encoding="utf-8")) if name.startswith(QUICK)}
+    told = {name for page in all_pages() for name in places(text(page)) if name.startswith(QUICK)}
     assert told == figures.keys()
 
 
@@ -134,14 +134,14 @@ def test_figures_of_the_demo_are_those_of_its_tables() -> None:
     rows = [row.split("|") for row in text(DEMO).splitlines() if row.count("|") == 4]
     table = {row[1].strip(): [float(number) for number in re.findall(r"[\d.]+", f"{row[2]} {row[3]}")] for row in rows}
     settled, strength = table["deepest settlement of the clay [mm]"], table["most of the strength used [-]"]
-    told: dict[str, set[str]] = {}
+    figures: dict[str, set[str]] = {}
     for page in all_pages():
         for name, texts in places(page.read_text(encoding="utf-8")).items():
-            told.setdefault(name, set()).update(texts)
-    shown = [float(each) for name in ("demo laid", "demo deepest") for each in told[name]]
+            figures.setdefault(name, set()).update(texts)
+    shown = [float(each) for name in ("demo laid", "demo deepest") for each in figures[name]]
     assert shown == pytest.approx(settled, abs=0.051)
-    assert told["demo strength"] == {f"{strength[1]:.2f}"}
-    assert {name: texts for name, texts in told.items() if name.startswith("demo ") and len(texts) > 1} == {}
+    assert figures["demo strength"] == {f"{strength[1]:.2f}"}
+    assert {name: texts for name, texts in figures.items() if name.startswith("demo ") and len(texts) > 1} == {}
 
 
 def test_python(first: Run, newcomer: Path) -> None:

@@ -74,16 +74,16 @@ def ran(scene: dict[str, Any], folder: Path) -> Run:
 
 def test_a_buoy_on_three_lines_rests_where_catenaries_balance_it(tmp_path: Path) -> None:
     """A third of its buoyancy is each line's upward pull; the anchors' circle gives H. The joints' gap is V/k."""
-    found = ran(mooring(elements=40), tmp_path)
+    run = ran(mooring(elements=40), tmp_path)
     V = (POINT["volume"] * RHO - POINT["mass"]) * G / 3.0
     H = brentq(lambda H: spans(H, V, WET, CHAIN["EA"], LENGTH)[0] - RADIUS, 1.0, 1e6)
     z = spans(H, V, WET, CHAIN["EA"], LENGTH)[1] - DEPTH
-    assert found["bodies/buoy/position"][-1] == pytest.approx([0.0, 0.0, z], abs=1e-3)
+    assert run["bodies/buoy/position"][-1] == pytest.approx([0.0, 0.0, z], abs=1e-3)
     for name in NAMES:
-        line = found.of_line(name)
+        line = run.of_line(name)
         tension = line["effective_tension"][-1]
         assert tension[[0, -1]] == pytest.approx([math.hypot(H, V - WET * LENGTH), math.hypot(H, V)], rel=1e-5)
-        gap, force = (found[f"joints/{name}_top/{key}"][-1] for key in ("gap", "force"))
+        gap, force = (run[f"joints/{name}_top/{key}"][-1] for key in ("gap", "force"))
         assert np.linalg.norm(force) == pytest.approx(math.hypot(H, V), rel=1e-5)
         assert 0.0 < np.linalg.norm(gap) < 0.01 * CHAIN["outer_diameter"]
 
@@ -97,11 +97,11 @@ def test_a_buoy_on_one_line_rises_over_its_anchor(body: dict[str, Any], tmp_path
     scene["lines"]["east"]["segments"][0]["length"] = L = 75.0
     scene["joints"]["east_top"]["between"][1]["offset"] = [0.0, 0.0, -arm]
     scene["bodies"]["buoy"]["position"] = [RADIUS + 4.0, 1.0, -22.0]
-    found = ran(scene, tmp_path)
+    run = ran(scene, tmp_path)
     net = (POINT["volume"] * RHO - POINT["mass"]) * G
     stretched = L + (net * L - 0.5 * WET * L**2) / CHAIN["EA"]
-    assert found["bodies/buoy/position"][-1] == pytest.approx([RADIUS, 0.0, stretched + arm - DEPTH], abs=1e-3)
-    tension = found.of_line("east")["effective_tension"][-1]
+    assert run["bodies/buoy/position"][-1] == pytest.approx([RADIUS, 0.0, stretched + arm - DEPTH], abs=1e-3)
+    tension = run.of_line("east")["effective_tension"][-1]
     assert tension[[0, -1]] == pytest.approx([net - WET * L, net], rel=1e-6)
 
 
@@ -121,18 +121,18 @@ def test_a_force_pulls_a_buoy_aside_as_its_catenary_lets_it(tmp_path: Path) -> N
     """There it stays in a stage in motion, as the load does."""
     F, net = 6.0e3, (POINT["volume"] * RHO - POINT["mass"]) * G
     at_rest = {"name": "wait", "kind": "dynamic", "duration": 0.5, "time_step": 0.05}
-    found = ran(on_one_line(POINT, {"force": [0.0, F, 0.0]}, at_rest), tmp_path)
+    run = ran(on_one_line(POINT, {"force": [0.0, F, 0.0]}, at_rest), tmp_path)
     aside, high = spans(F, net, WET, CHAIN["EA"], 75.0)
     for n in (0, -1):
-        assert found["bodies/buoy/position"][n] == pytest.approx([RADIUS, aside, high - DEPTH], abs=1e-3)
+        assert run["bodies/buoy/position"][n] == pytest.approx([RADIUS, aside, high - DEPTH], abs=1e-3)
 
 
 def test_a_moment_heels_a_buoy_until_it_is_righted(tmp_path: Path) -> None:
     """By buoyancy above, weight below, and the line's pull at its arm."""
     M, B, W = 9.0e3, RIGID["volume"] * RHO * G, RIGID["mass"] * G
-    found = ran(on_one_line(RIGID, {"moment": [0.0, M, 0.0]}), tmp_path)
+    run = ran(on_one_line(RIGID, {"moment": [0.0, M, 0.0]}), tmp_path)
     righting = B * RIGID["centre_of_buoyancy"][2] - W * RIGID["centre_of_gravity"][2] + (B - W) * 1.0
-    assert found["bodies/buoy/rotation"][-1] == pytest.approx([0.0, math.asin(M / righting), 0.0], abs=1e-5)
+    assert run["bodies/buoy/rotation"][-1] == pytest.approx([0.0, math.asin(M / righting), 0.0], abs=1e-5)
 
 
 def test_steps_hit_the_bends_of_a_load_on_a_body() -> None:
@@ -147,13 +147,13 @@ def test_steps_hit_the_bends_of_a_load_on_a_body() -> None:
 
 def test_a_lazy_s_over_an_arch_rests_where_catenaries_balance_it(tmp_path: Path) -> None:
     """Tensions within 1 % of a root finder's on elastic catenaries; the arch's place and angle, too."""
-    found = ran(lazy_s(), tmp_path)
+    run = ran(lazy_s(), tmp_path)
     (x, z, angle), tensions = lazy_s_by_catenaries()
-    assert found["bodies/arch/position"][-1] == pytest.approx([x, 0.0, z], abs=0.05)
-    assert found["bodies/arch/rotation"][-1] == pytest.approx([0.0, -angle, 0.0], abs=2e-3)
+    assert run["bodies/arch/position"][-1] == pytest.approx([x, 0.0, z], abs=0.05)
+    assert run["bodies/arch/rotation"][-1] == pytest.approx([0.0, -angle, 0.0], abs=2e-3)
     assert abs(angle) > 0.02
     for name, ends in tensions.items():
-        assert found.of_line(name)["effective_tension"][-1, [0, -1]] == pytest.approx(ends, rel=0.005), name
+        assert run.of_line(name)["effective_tension"][-1, [0, -1]] == pytest.approx(ends, rel=0.005), name
 
 
 def one_riser() -> dict[str, Any]:
@@ -204,10 +204,10 @@ def test_lines_that_keep_to_a_plane_are_those_of_space(along: int, tmp_path: Pat
     space, plane, one = (ran(each, tmp_path / str(n)) for n, each in enumerate((two, two | {"dimension": 2}, alone)))
     assert plane.summary["dofs"]["riser"] < 0.6 * space.summary["dofs"]["riser"]
     for name in ("low", "high"):
-        known, found = space.of_line(name), plane.of_line(name)
-        np.testing.assert_allclose(found["position"], known["position"], atol=1e-7)
-        assert not found["position"][..., 1 - along].any()
-        np.testing.assert_allclose(found["effective_tension"], known["effective_tension"], rtol=1e-7)
+        known, line = space.of_line(name), plane.of_line(name)
+        np.testing.assert_allclose(line["position"], known["position"], atol=1e-7)
+        assert not line["position"][..., 1 - along].any()
+        np.testing.assert_allclose(line["effective_tension"], known["effective_tension"], rtol=1e-7)
     high = plane.of_line("high")["effective_tension"][:, -1]
     assert high == pytest.approx(one["effective_tension"][:, -1], rel=1e-3)
 
@@ -245,13 +245,13 @@ def test_the_energy_of_bodies_balances(tmp_path: Path) -> None:
     water: dict[str, Any] = {"density": RHO, "surface_level": 0.0, "depth": DEPTH, "waves": waves}
     water["current"] = {"profile": [[-DEPTH, 0.2, 0.1], [0.0, 0.6, 0.3]]}
     rough = mooring(shaken(), body=RIGID | {"position": [0.0, 0.0, -1.0]}, water=water)
-    for found in (calm, ran(rough, tmp_path / "rough")):
-        energy = found.summary["stages"][1]["energy"]
+    for result in (calm, ran(rough, tmp_path / "rough")):
+        energy = result.summary["stages"][1]["energy"]
         assert energy["turned_over"] > 1e3
         assert abs(energy["relative_residual"]) < 5e-3
         assert energy["work_by"]["supports"] != 0.0
     assert calm.summary["stages"][1]["energy"]["dissipated_by"]["body_drag"] > 0.0
-    assert np.abs(found["bodies/buoy/rotation"][-1]).max() > 1e-3
+    assert np.abs(result["bodies/buoy/rotation"][-1]).max() > 1e-3
 
 
 def test_lines_tied_along_their_length_keep_their_distance(tmp_path: Path) -> None:
@@ -287,20 +287,20 @@ def test_lines_tied_along_their_length_keep_their_distance(tmp_path: Path) -> No
         ],
         "output": {"clearance": [{"between": ["light", "heavy"]}]},
     }
-    found = ran(scene, tmp_path)
-    light, heavy = (found.of_line(name) for name in lines)
+    run = ran(scene, tmp_path)
+    light, heavy = (run.of_line(name) for name in lines)
     assert len(light.arc) == 11, "three arcs have got nodes of their own"
     for arc in (12.0, 25.0, 38.0):
         one, other = (line["position"][:, np.abs(line.arc - arc).argmin()] for line in (light, heavy))
-        force, gap = (float(np.linalg.norm(found[f"joints/tie{arc:g}/{key}"][-1])) for key in ("force", "gap"))
+        force, gap = (float(np.linalg.norm(run[f"joints/tie{arc:g}/{key}"][-1])) for key in ("force", "gap"))
         assert gap == pytest.approx(force / (100.0 * pipe["EA"] / (13.0 / 3.0)), rel=1e-6)
         before, after = np.linalg.norm(one - other, axis=1)
         assert before == pytest.approx(0.4, abs=2e-3)
         assert after == pytest.approx(before, abs=1.1 * gap)
         assert one[1, 1] - one[0, 1] > 0.5, "it is taken along"
-    forces = sum(found[f"joints/{name}/force"][-1] for name in ties)
+    forces = sum(run[f"joints/{name}/force"][-1] for name in ties)
     assert forces[1] < -100.0
-    assert found["clearance/light_heavy/distance"][-1] == pytest.approx(0.4, abs=0.05)
+    assert run["clearance/light_heavy/distance"][-1] == pytest.approx(0.4, abs=0.05)
 
 
 def test_a_line_with_free_ends_hangs_on_its_ties(tmp_path: Path) -> None:
@@ -319,10 +319,10 @@ def test_a_line_with_free_ends_hangs_on_its_ties(tmp_path: Path) -> None:
     }
     pipe = {"EA": 1.0e8, "EI": 1.0e6, "GJ": 1.0e6, "submerged_weight": 50.0}
     scene = {"line_types": {"pipe": pipe}, "lines": lines, "joints": ties, "stages": [static()]}
-    found = ran(scene, tmp_path)
-    ends = found.of_line("above").summary["stages"][0]["final"]
+    run = ran(scene, tmp_path)
+    ends = run.of_line("above").summary["stages"][0]["final"]
     assert ends["start"]["force"][2] + ends["end"]["force"][2] == pytest.approx(2.0 * 50.0 * 20.0, rel=1e-6)
-    gap = found.of_line("above")["position"][-1] - found.of_line("below")["position"][-1]
+    gap = run.of_line("above")["position"][-1] - run.of_line("below")["position"][-1]
     assert gap[[1, 5, 9]] == pytest.approx(np.tile([0.0, 0.0, 2.0], (3, 1)), abs=1e-3)
 
 
@@ -371,9 +371,9 @@ def test_forces_of_free_ends_count_beside_those_of_all_lines() -> None:
     final |= {"min_effective_tension": {"value": 0.0}, "touchdown_arc": None, "contact_force": 0.0}
     pulled = final | {"end": ends["end"] | {"resultant_force": 1.0e5}}
     stage = {"name": "rest", "kind": "static", "lines": {"free": {"final": final}, "held": {"final": pulled}}}
-    found = key_results({"stages": [stage]})
-    assert found["rest: free force at end"].scale == pytest.approx(1.0e2)
-    assert found["rest: held force at start"].scale == pytest.approx(1.0e4)
+    results = key_results({"stages": [stage]})
+    assert results["rest: free force at end"].scale == pytest.approx(1.0e2)
+    assert results["rest: held force at start"].scale == pytest.approx(1.0e4)
 
 
 def test_what_is_wrong_with_a_line_has_its_path(tmp_path: Path) -> None:
@@ -386,8 +386,8 @@ def test_what_is_wrong_with_a_line_has_its_path(tmp_path: Path) -> None:
 
 def test_files_of_a_run(tmp_path: Path) -> None:
     output = {"clearance": [{"between": ["east", "north"], "beyond": 20.0}]}
-    found = ran(mooring(shaken(0.2), output=output), tmp_path)
-    assert found.lines == NAMES
+    run = ran(mooring(shaken(0.2), output=output), tmp_path)
+    assert run.lines == NAMES
     written = {f"line_{name}.{kind}" for name in NAMES for kind in ("xdmf", "vtkhdf")}
     assert written <= {path.name for path in tmp_path.iterdir()}
     assert not (tmp_path / "riser.xdmf").exists()
@@ -401,7 +401,7 @@ def test_files_of_a_run(tmp_path: Path) -> None:
     assert east.summary["stages"][1]["final"]["end"]["effective_tension"] == east["effective_tension"][-1, -1]
     assert east.read_scene().line.length == LENGTH
     with pytest.raises(ResultsError, match=telling("effective_tension", "not of the run", "lines")):
-        found["effective_tension"]
+        run["effective_tension"]
     named = {value.name for value in case_values(tmp_path, 0.0)}
     assert {"east top tension", "north largest bending moment"} <= named
     page = write_report(of_folders([tmp_path], {}), tmp_path / "report.html").read_text()
@@ -410,51 +410,51 @@ def test_files_of_a_run(tmp_path: Path) -> None:
     assert all(re.search(rf"<h3[^>]*>.*Line {name}</h3>", page) for name in NAMES)
     assert "Sensitivity" not in page, "lines of one run are no parameter"
     assert page.count(">body buoy</td>") == page.count(">clearance east_north</td>") == 2
-    rest, moved = (row for row in hung_table(found.summary).rows if row[1] == "clearance east_north")
-    first, *distances = found["clearance/east_north/distance"]
+    rest, moved = (row for row in hung_table(run.summary).rows if row[1] == "clearance east_north")
+    first, *distances = run["clearance/east_north/distance"]
     assert float(rest[4]) == pytest.approx(first, rel=1e-4)
     assert [float(moved[n]) for n in (4, 5, 7)] == pytest.approx(
         [distances[-1], min(distances), max(distances)], rel=1e-4
     )
     with pytest.raises(ResultsError, match=telling("stress", "not of the run", f"{tmp_path / 'east'}")):
-        stress_history(found)
+        stress_history(run)
     with pytest.raises(ResultsError, match=telling("no line west", "east, north, south")):
-        found.of_line("west")
+        run.of_line("west")
     with h5py.File(tmp_path / "results.nc") as file:
         assert {"time", "work", "clearance", "work_supports"} < {*file}
         for name in {*file} - {*NAMES}:
             with pytest.raises(SceneError, match=telling(f"lines.{name}", "rename")):
                 scene_from_mapping(with_line_named(name))
     summary = json.loads((tmp_path / "summary.json").read_text())["stages"][1]
-    place = found["bodies/buoy/position"]
+    place = run["bodies/buoy/position"]
     assert summary["bodies"]["buoy"]["position"]["final"] == pytest.approx(place[-1])
     assert summary["bodies"]["buoy"]["position"]["max"] == pytest.approx(place[1:].max(axis=0))
-    x, other = (found.of_line(name)["position"][-1] for name in ("east", "north"))
+    x, other = (run.of_line(name)["position"][-1] for name in ("east", "north"))
     nearest = np.linalg.norm(x[:17, None] - other[None, :17], axis=2).min()
-    assert found["clearance/east_north/distance"][-1] == pytest.approx(nearest - CHAIN["outer_diameter"], rel=0.02)
+    assert run["clearance/east_north/distance"][-1] == pytest.approx(nearest - CHAIN["outer_diameter"], rel=0.02)
 
 
 def test_statistics_of_bodies_joints_and_clearances(tmp_path: Path) -> None:
     output = {"clearance": [{"between": ["east", "north"], "beyond": 20.0}]}
-    found = ran(mooring(shaken(1.2), output=output), tmp_path)
-    moving = found["stage"] == 1
-    held = np.linalg.norm(found["joints/east_top/force"], axis=1)
-    assert np.ptp(held[moving]) > 0.0
+    run = ran(mooring(shaken(1.2), output=output), tmp_path)
+    moving = run["stage"] == 1
+    forces = np.linalg.norm(run["joints/east_top/force"], axis=1)
+    assert np.ptp(forces[moving]) > 0.0
     for name, values in {
-        "bodies/buoy/position.z": found["bodies/buoy/position"][:, 2],
-        "joints/east_top/force.size": held,
-        "clearance/east_north/distance": found["clearance/east_north/distance"],
+        "bodies/buoy/position.z": run["bodies/buoy/position"][:, 2],
+        "joints/east_top/force.size": forces,
+        "clearance/east_north/distance": run["clearance/east_north/distance"],
     }.items():
-        records = records_of([found], name, None)
+        records = records_of([run], name, None)
         assert np.isnan(records.arc).all()
-        at = found.time[moving][0] + records.step * np.arange(len(records.values[0]))
-        expected = np.interp(at, found.time[moving], values[moving])
+        at = run.time[moving][0] + records.step * np.arange(len(records.values[0]))
+        expected = np.interp(at, run.time[moving], values[moving])
         np.testing.assert_allclose(records.values[0][:, 0], expected, rtol=1e-9, err_msg=name)
-    assert records_of([found], "joints/east_top/moment.x", None).units == "N m"
+    assert records_of([run], "joints/east_top/moment.x", None).units == "N m"
     with pytest.raises(ResultsError, match=telling("--of bodies/arch/position", "joints/east_top/force")):
-        records_of([found], "bodies/arch/position.x", None)
+        records_of([run], "bodies/arch/position.x", None)
     with pytest.raises(ResultsError, match=telling("vector", "joints/east_top/force.x")):
-        records_of([found], "joints/east_top/force", None)
+        records_of([run], "joints/east_top/force", None)
 
 
 def test_indicators_of_a_line_are_those_of_a_riser(tmp_path: Path) -> None:
@@ -468,8 +468,8 @@ def test_indicators_of_a_line_are_those_of_a_riser(tmp_path: Path) -> None:
     expected = [stage["indicators"] for stage in alone.summary["stages"]]
     assert [*expected[0]] == ["bending"]
     assert [*expected[1]] == ["bending", "time_step", "impact"]
-    found = [stage["indicators"] for stage in several.of_line("only").summary["stages"]]
-    for one, other in zip(expected, found, strict=True):
+    indicators = [stage["indicators"] for stage in several.of_line("only").summary["stages"]]
+    for one, other in zip(expected, indicators, strict=True):
         assert flat(other) == pytest.approx(flat(one), rel=1e-6, nan_ok=True)
     assert flat(expected[1])["time_step.end.effective_tension.max"] > 0.0
     shared = several.summary["stages"][1]["indicators"]
@@ -479,19 +479,19 @@ def test_indicators_of_a_line_are_those_of_a_riser(tmp_path: Path) -> None:
 
 def flat(nested: dict[str, Any], path: str = "") -> dict[str, float]:
     """Values by path; nan for null."""
-    found: dict[str, float] = {}
+    values: dict[str, float] = {}
     for key, value in nested.items():
         number = np.nan if value is None else value
-        found |= flat(value, f"{path}{key}.") if isinstance(value, dict) else {path + key: number}
-    return found
+        values |= flat(value, f"{path}{key}.") if isinstance(value, dict) else {path + key: number}
+    return values
 
 
 def test_error_bars_of_each_line_hold(tmp_path: Path) -> None:
     """Against three times the elements of all lines and a quarter of the step; a line's report has its own alone."""
     scene = scene_from_mapping(mooring(shaken(1.5), elements=12))
     run_with_error_bars(scene, tmp_path / "run")
-    found = Run(tmp_path / "run")
-    bars = {(bar["stage"], bar["of"], bar["name"]): bar for bar in found.summary["error_bars"]["quantities"]}
+    run = Run(tmp_path / "run")
+    bars = {(bar["stage"], bar["of"], bar["name"]): bar for bar in run.summary["error_bars"]["quantities"]}
     assert {of for _, of, _ in bars} == {*NAMES, "buoy"}
     for setting, factor in zip(settings_of(scene), (3.0, 4.0), strict=True):
         scene = varied(scene, setting, factor)
@@ -501,9 +501,9 @@ def test_error_bars_of_each_line_hold(tmp_path: Path) -> None:
     assert len(inside) == len(bars) == 45
     assert sum(inside) >= 0.95 * len(inside)
     assert max(error / each.scale for error, each in off) > 1e-3, "else there is nothing to tell"
-    own = found.of_line("east").summary["error_bars"]["quantities"]
+    own = run.of_line("east").summary["error_bars"]["quantities"]
     assert own == [bar for (_, line, _), bar in bars.items() if line == "east"]
-    shown = key_results_table(found.of_line("east").summary)
+    shown = key_results_table(run.of_line("east").summary)
     assert all(row[shown.head.index("±")] for row in shown.rows)
 
 
@@ -540,13 +540,13 @@ def test_an_accuracy_asked_of_several_lines_is_reached(tmp_path: Path) -> None:
         del line["segments"][0]["elements"]
     del asked["stages"][1]["time_step"]
     run_to_accuracy(scene_from_mapping(asked), tmp_path / "run")
-    found = Run(tmp_path / "run")
-    assert found.summary["accuracy"]["reached"]
-    chosen = found.read_scene()
+    run = Run(tmp_path / "run")
+    assert run.summary["accuracy"]["reached"]
+    chosen = run.read_scene()
     assert len({line.element_count for line in chosen.lines.values()}) > 1
     finer = varied(varied(chosen, ELEMENTS, 2.0), TIME_STEP, 2.0)
     true = key_results(peaks_of(finer, MPI.COMM_SELF).as_summary("peaks"))
-    off = [each.error(true[key]) for key, each in key_results(found.summary).items()]
+    off = [each.error(true[key]) for key, each in key_results(run.summary).items()]
     assert max(off) < 0.05
 
 
@@ -586,8 +586,9 @@ def test_a_run_that_was_left_goes_on_to_the_last_bit(tmp_path: Path) -> None:
         for name in names:
             if isinstance(one[name], h5py.Dataset) and one[name].dtype.kind == "f":
                 assert np.array_equal(one[name][...], other[name][...], equal_nan=True), name
-    alone, left = (json.loads((tmp_path / name / "summary.json").read_text())["stages"] for name in ("alone", "left"))
-    assert alone == left
+    folders = (tmp_path / name for name in ("alone", "left"))
+    alone, resumed = (json.loads((folder / "summary.json").read_text())["stages"] for folder in folders)
+    assert alone == resumed
     assert json.dumps(peaks.as_summary("smooth")) == json.dumps(whole.as_summary("smooth"))
     assert len(names) > 100
 
@@ -603,7 +604,7 @@ def test_a_run_begins_with_another_ones_end(tmp_path: Path) -> None:
     one, other = (Run(tmp_path / name) for name in ("whole", "shaken"))
     for path in ("east/position", "south/effective_tension", "bodies/buoy/rotation", "joints/east_top/force"):
         line, name = path.rsplit("/", 1) if path.split("/")[0] in NAMES else ("", path)
-        last = [(found.of_line(line) if line else found)[name][-1] for found in (one, other)]
+        last = [(each_run.of_line(line) if line else each_run)[name][-1] for each_run in (one, other)]
         assert np.array_equal(*last), path
     heavier = begun | {"bodies": {"buoy": begun["bodies"]["buoy"] | {"mass": 2100.0}}}
     with pytest.raises(SceneError, match=telling("bodies.buoy.mass", "was 2000.0", "is 2100.0")):
@@ -634,8 +635,8 @@ def drifting(x: float, y: float) -> dict[str, Any]:
 def test_dynamic_relaxation_finds_where_a_buoy_drifts_to(tmp_path: Path) -> None:
     """Wherever it begins: where its chain bears what the current's drag and its buoyancy on the wet share put there."""
     each = [ran(drifting(*at), tmp_path / str(n)) for n, at in enumerate(((0.0, 0.0), (196.0, 36.0)))]
-    assert [found.summary["stages"][0]["method"] for found in each] == ["relaxation", "relaxation"]
-    one, other = (found["bodies/buoy/position"][-1] for found in each)
+    assert [run.summary["stages"][0]["method"] for run in each] == ["relaxation", "relaxation"]
+    one, other = (run["bodies/buoy/position"][-1] for run in each)
     assert one == pytest.approx(other, abs=1e-4)
     force, body = each[0]["joints/east_top/force"][-1], drifting(0.0, 0.0)["bodies"]["buoy"]
     wet = (abs(force[2]) + body["mass"] * G) / (RHO * G * body["volume"])

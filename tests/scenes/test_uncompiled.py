@@ -64,8 +64,8 @@ def computed(tmp_path_factory: pytest.TempPathFactory) -> Any:
         call = [sys.executable, str(ROOT / "tests/support/few_steps.py"), str(folder / "scene.yaml"), str(folder)]
         done = finished(call, folder, environment() | ({} if compiled else OFF))
         assert done.returncode == 0, done.stderr
-        found: dict[str, Any] = json.loads((folder / "found.json").read_text(encoding="utf-8"))
-        return found
+        data: dict[str, Any] = json.loads((folder / "found.json").read_text(encoding="utf-8"))
+        return data
 
     return steps
 
@@ -76,9 +76,9 @@ def test_a_step_is_the_same_with_the_compiler_off(name: str, computed: Any) -> N
     assert set(compiled["kernels"]) <= set(plain["kernels"])
     assert len(compiled["kernels"]) > 30
     assert plain["iterations"] == compiled["iterations"]
-    found, expected = np.array(plain["last"]), np.array(compiled["last"])
+    uncompiled, expected = np.array(plain["last"]), np.array(compiled["last"])
     assert np.abs(expected).max() > 0.01
-    np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-8 * np.abs(expected).max())
+    np.testing.assert_allclose(uncompiled, expected, rtol=1e-6, atol=1e-8 * np.abs(expected).max())
 
 
 @pytest.mark.parametrize(
@@ -97,8 +97,8 @@ def test_a_step_is_the_same_with_the_compiler_off(name: str, computed: Any) -> N
 def test_kernels_of_what_a_scene_lacks_are_not_called(modules: str, scenes: set[str], computed: Any) -> None:
     """A kernel that nothing calls or binds is never compiled."""
     called = {name: computed(name, False)["kernels"] for name in SCENES}
-    found = re.compile(rf"riser_soil\.({modules})")
-    assert {name for name, kernels in called.items() if any(map(found.match, kernels))} == scenes
+    pattern = re.compile(rf"riser_soil\.({modules})")
+    assert {name for name, kernels in called.items() if any(map(pattern.match, kernels))} == scenes
 
 
 @pytest.mark.parametrize("given", [{}, OFF])

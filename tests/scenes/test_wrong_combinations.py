@@ -28,7 +28,7 @@ SECTIONS = ("{interval: 0.1}", "{interval: 0.1, sections: {arcs: [20.0, 900.0]}}
 NO_WATER = ("water: {density: 1025.0}\n", "")
 
 
-def held(friction: str, method: str = "") -> tuple[str, str]:
+def rough(friction: str, method: str = "") -> tuple[str, str]:
     return "method: node", f"{method}friction: {{{friction}}}"
 
 
@@ -53,13 +53,13 @@ def history(values: str) -> Changes:
 
 CASES: list[tuple[Changes, str, str]] = [
     ((("method: node", "method: surface"), NO_SOIL), "contact.method", "surface is contact with soil"),
-    ((held("mobilisation: 0.01"),), "contact.friction.axial: missing", "add axial, adhesion or both"),
-    ((held("adhesion: 1.0, lateral: 0.5"),), "contact.friction.lateral", "is given without axial"),
-    ((held("adhesion: 1.2"),), "contact.friction.adhesion", "1"),
-    ((held("adhesion: 1.0, axial: 0.5"), NO_SOIL), "contact.friction.adhesion", "the spring seabed has none"),
-    ((held("adhesion: 1.0, axial: 0.5", "method: node, "),), "contact.friction.adhesion", "the spring seabed has none"),
-    ((held("adhesion: 1.0"),), "contact.friction.adhesion", "beside the clay the spring seabed has none; give axial"),
-    ((held("adhesion: 1.0"), NO_SEABED, SAND), "contact.friction.adhesion", "soil that is drucker-prager has none"),
+    ((rough("mobilisation: 0.01"),), "contact.friction.axial: missing", "add axial, adhesion or both"),
+    ((rough("adhesion: 1.0, lateral: 0.5"),), "contact.friction.lateral", "is given without axial"),
+    ((rough("adhesion: 1.2"),), "contact.friction.adhesion", "1"),
+    ((rough("adhesion: 1.0, axial: 0.5"), NO_SOIL), "contact.friction.adhesion", "the spring seabed has none"),
+    ((rough("adhesion: 1.0, axial: 0.5", "method: node, "),), "contact.friction.adhesion", "seabed has none"),
+    ((rough("adhesion: 1.0"),), "contact.friction.adhesion", "beside the clay the spring seabed has none; give axial"),
+    ((rough("adhesion: 1.0"), NO_SEABED, SAND), "contact.friction.adhesion", "soil that is drucker-prager has none"),
     (
         (("method: node", "method: surface"), ("stiffness: 1.0e5}", "stiffness: 1.0e5, contact_at: axis}")),
         "seabed.contact_at",

@@ -94,9 +94,9 @@ def counted(coupled: bool) -> Iterator[Counting]:
     counting, suits, update = Counting(), RiserAboveSoil.suits, PerfectlyPlastic.update
 
     def chosen(self: RiserAboveSoil, f: Array, negligible: float) -> bool:
-        found = not coupled and suits(self, f, negligible)
-        counting.alone.append(found)
-        return found
+        suitable = not coupled and suits(self, f, negligible)
+        counting.alone.append(suitable)
+        return suitable
 
     def updated(self: PerfectlyPlastic, *given: Any, **more: Any) -> Any:
         counting.laws += 1
@@ -109,37 +109,37 @@ def counted(coupled: bool) -> Iterator[Counting]:
         yield counting
 
 
-def taken(scene: Mapping, coupled: bool = False, comm: Any = MPI.COMM_SELF) -> Seen:
+def counted_run(scene: Mapping, coupled: bool = False, comm: Any = MPI.COMM_SELF) -> Seen:
     """All stages of a scene."""
-    assembly, seen = build(scene_from_mapping(scene), comm), Seen()
+    assembly, counts = build(scene_from_mapping(scene), comm), Seen()
     assert assembly.soil is not None
     total, line = assembly.soil.whole.field, assembly.riser.line
     with counted(coupled) as counting:
 
         def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
             alone, laws, factorisations = counting.read()
-            seen.alone.append(alone)
-            seen.laws.append(laws)
-            seen.factorisations.append(factorisations)
-            seen.places.append(line.x.ravel().tolist())
-            seen.settled.append(float(np.abs(total.total).max(initial=0.0)))
+            counts.alone.append(alone)
+            counts.laws.append(laws)
+            counts.factorisations.append(factorisations)
+            counts.places.append(line.x.ravel().tolist())
+            counts.settled.append(float(np.abs(total.total).max(initial=0.0)))
 
         before = State.at_rest(0.0, assembly.size)
         for stage in assembly.scene.stages:
             before = run_stage(assembly, stage, before, Watcher(watch), Timer.new())
-    return seen
+    return counts
 
 
-def changes(seen: Seen) -> Counter[tuple[bool, bool]]:
+def changes(counts: Seen) -> Counter[tuple[bool, bool]]:
     """How often one linear solver follows another within a step."""
-    return Counter(pair for step in seen.alone for pair in pairwise(step))
+    return Counter(pair for step in counts.alone for pair in pairwise(step))
 
 
 if __name__ == "__main__":
     name, linear = sys.argv[1:]
-    found = taken(SCENES[name](linear), comm=MPI.COMM_WORLD)
-    same = MPI.COMM_WORLD.allgather(found.alone)
-    found.settled = [max(each) for each in zip(*MPI.COMM_WORLD.allgather(found.settled), strict=True)]
+    result = counted_run(SCENES[name](linear), comm=MPI.COMM_WORLD)
+    same = MPI.COMM_WORLD.allgather(result.alone)
+    result.settled = [max(each) for each in zip(*MPI.COMM_WORLD.allgather(result.settled), strict=True)]
     if MPI.COMM_WORLD.rank == 0:
-        assert all(each == found.alone for each in same), "ranks have chosen unlike each other"
-        print(json.dumps(asdict(found)))
+        assert all(each == result.alone for each in same), "ranks have chosen unlike each other"
+        print(json.dumps(asdict(result)))

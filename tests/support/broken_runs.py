@@ -70,9 +70,9 @@ def start(folder: Path, *command: str) -> subprocess.Popen[str]:
     return _start([sys.executable, *(command or ("-m", "riser_soil"))], folder, ENDLESS)
 
 
-def start_on_a_filled_disk(folder: Path, disk: Path, left: int) -> subprocess.Popen[str]:
+def start_on_a_filled_disk(folder: Path, disk: Path, free: int) -> subprocess.Popen[str]:
     """The run ends in want of room, or after 200 s of its own time. disk: an empty folder, where it is mounted."""
-    alone = ["unshare", "--map-root-user", "--mount", sys.executable, "-c", ON_A_FILLED_DISK, str(left), str(disk)]
+    alone = ["unshare", "--map-root-user", "--mount", sys.executable, "-c", ON_A_FILLED_DISK, str(free), str(disk)]
     return _start(alone, folder, (*ENDLESS, "--set", "stages.1.duration=200"))
 
 

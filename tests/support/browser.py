@@ -25,7 +25,7 @@ class Visit:
 
 def visit(page: Path, *options: str) -> Visit:
     """Opens a page in an empty profile, by options such as --dump-dom, --screenshot=FILE and --print-to-pdf=FILE."""
-    program = next((found for name in NAMES if (found := shutil.which(name))), None)
+    program = next((path for name in NAMES if (path := shutil.which(name))), None)
     assert program is not None, f"none of {', '.join(NAMES)} is installed; make setup does it"
     with tempfile.TemporaryDirectory() as profile:
         call = [program, *QUIET, f"--user-data-dir={profile}", *options, page.resolve().as_uri()]

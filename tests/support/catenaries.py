@@ -37,8 +37,8 @@ def pulls(a: Array, b: Array, w: float, EA: float, L: float) -> tuple[Array, Arr
 
     slack = np.array([math.log(0.5), 0.7])
     start = np.array([math.log(taut * steep[0] / scale), (taut * steep[1] + 0.5 * weight) / scale]) if taut else slack
-    found = root(off, start, tol=1e-13).x  # as near as round-off lets it, of which it complains
-    assert np.abs(off(found)).max() < 1e-9, "m"
-    H, V = force(found)
+    solution = root(off, start, tol=1e-13).x  # as near as round-off lets it, of which it complains
+    assert np.abs(off(solution)).max() < 1e-9, "m"
+    H, V = force(solution)
     ahead = float(np.sign(dx)) * H
     return np.array([ahead, V - w * L]), np.array([-ahead, -V])

@@ -62,5 +62,5 @@ def solve(line: Line, parts: Sequence[Part], t: float = 1.0, tolerance: float = 
 
 def part_force(parts: Sequence[Part], state: State) -> Array:
     """Largest element forces of the parts that have elements."""
-    found = [p.element_forces(state) for p in parts if hasattr(p, "element_forces")]
-    return np.concatenate([np.ravel(f) for f in found if f is not None])
+    forces = [p.element_forces(state) for p in parts if hasattr(p, "element_forces")]
+    return np.concatenate([np.ravel(f) for f in forces if f is not None])

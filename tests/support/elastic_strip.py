@@ -31,9 +31,9 @@ def stress_below(points: Array) -> Array:
     """Stress (n, 3) [Pa] σx, σz, τxz at points (n, 3), tension positive; σy = ν (σx + σz)."""
     x, depth = points[:, 0], -points[:, 2]
     left, right = np.arctan2(x + 0.5, depth), np.arctan2(x - 0.5, depth)
-    seen, turned = left - right, 0.5 * (np.sin(2.0 * left) - np.sin(2.0 * right))
+    angle, turned = left - right, 0.5 * (np.sin(2.0 * left) - np.sin(2.0 * right))
     shear = 0.5 * (np.cos(2.0 * right) - np.cos(2.0 * left))
-    return np.stack([-(seen - turned), -(seen + turned), shear], axis=1) / np.pi
+    return np.stack([-(angle - turned), -(angle + turned), shear], axis=1) / np.pi
 
 
 class StripOnSlice:
@@ -56,9 +56,9 @@ class StripOnSlice:
         """Of the settlement from the middle at the surface up to 1.5 B away, largest, over that of the last of them."""
         top = (self.points[:, 2] > -1e-9) & (self.points[:, 0] < 1.5 + 1e-9)
         x, settled = self.points[top, 0], self.u[top, 2]
-        found = settled - np.mean(settled[x < 1e-9])
+        settlement = settled - np.mean(settled[x < 1e-9])
         exact = settlement_from_the_middle(x)
-        return float(np.abs(found - exact).max() / exact.max())
+        return float(np.abs(settlement - exact).max() / exact.max())
 
     def stress_error(self) -> float:
         """Of the mean stress and the von Mises stress of cells below the strip's middle half, 1.5 B deep; over 1 Pa."""

@@ -44,8 +44,8 @@ def main(scene: str, folder: Path) -> None:
     watched = patch.object(Kernel, "__call__", called), patch.object(Bound, "__init__", bound)
     with watched[0], watched[1], patch.object(Observer, "record", recorded):
         run(shortened(read_scene(scene)), folder / "results", force=True)
-    found = {"last": last, "iterations": iterations, "kernels": sorted(kernels)}
-    (folder / "found.json").write_text(json.dumps(found), encoding="utf-8")
+    data = {"last": last, "iterations": iterations, "kernels": sorted(kernels)}
+    (folder / "found.json").write_text(json.dumps(data), encoding="utf-8")
 
 
 if __name__ == "__main__":

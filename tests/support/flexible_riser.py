@@ -79,7 +79,7 @@ def elastica_H() -> tuple[float, float]:
     """
     e = properties(700)
     weight = float(e.weight[0]) * LENGTH
-    found, stiff, axial = guess(e), EI / (weight * LENGTH**2), EA / weight
+    answer, stiff, axial = guess(e), EI / (weight * LENGTH**2), EA / weight
 
     def slopes(s: Array, y: Array, p: Array) -> Array:
         cos, sin, V = np.cos(y[2]), np.sin(y[2]), p[1] + s
@@ -90,10 +90,10 @@ def elastica_H() -> tuple[float, float]:
         goal = TOP / LENGTH
         return np.array([first[0], first[1], first[3], last[0] - goal[0], last[1] - goal[2], last[3]])
 
-    tangent = np.append(found.curve.tangent[:, 0], found.curve.tangent[-1:, 1], axis=0)
+    tangent = np.append(answer.curve.tangent[:, 0], answer.curve.tangent[-1:, 1], axis=0)
     theta = np.unwrap(np.arctan2(tangent[:, 2], tangent[:, 0]))
-    y = np.stack([*(found.curve.position[:, [0, 2]].T / LENGTH), theta, stiff * np.gradient(theta, e.arc / LENGTH)])
-    forces = np.array([found.H, -found.tension[0] * abs(tangent[0, 2])]) / weight
+    y = np.stack([*(answer.curve.position[:, [0, 2]].T / LENGTH), theta, stiff * np.gradient(theta, e.arc / LENGTH)])
+    forces = np.array([answer.H, -answer.tension[0] * abs(tangent[0, 2])]) / weight
     solution = solve_bvp(slopes, ends, e.arc / LENGTH, y, forces, tol=1e-10, max_nodes=200_000)
     assert solution.success, solution.message
     return float(solution.p[0] * weight), float(solution.p[1] * weight)

@@ -100,6 +100,6 @@ def _by_place(points: Array) -> Array:
 
 
 if __name__ == "__main__":
-    found = run(pressed("auto", model=sys.argv[1]), MPI.COMM_WORLD)
+    result = run(pressed("auto", model=sys.argv[1]), MPI.COMM_WORLD)
     if MPI.COMM_WORLD.rank == 0:
-        print(json.dumps({name: np.asarray(values).tolist() for name, values in found._asdict().items()}))
+        print(json.dumps({name: np.asarray(values).tolist() for name, values in result._asdict().items()}))

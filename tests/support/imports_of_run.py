@@ -15,8 +15,8 @@ def main(scene: str, folder: Path) -> None:
 
     with event.install_recorder("numba:compile") as compiled:
         run(read_scene(scene), folder / "results", force=True)
-    found = {"modules": sorted(sys.modules), "compiled": len(compiled.buffer)}
-    (folder / "found.json").write_text(json.dumps(found), encoding="utf-8")
+    data = {"modules": sorted(sys.modules), "compiled": len(compiled.buffer)}
+    (folder / "found.json").write_text(json.dumps(data), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -31,8 +31,8 @@ def last_stage(scene: Scene) -> Mapping:
     """The summary of a scene's last stage."""
     with tempfile.TemporaryDirectory() as folder:
         run(scene, Path(folder) / "out")
-        found: Mapping = Run(Path(folder) / "out").summary["stages"][-1]
-        return found
+        stage: Mapping = Run(Path(folder) / "out").summary["stages"][-1]
+        return stage
 
 
 def heaved(amplitude: float, period: float, duration: float, ramp: float = 10.0) -> Callable[[float], Scene]:

@@ -83,16 +83,16 @@ def _same(one: AnyArray, other: AnyArray) -> bool:
 def differing_rows(one: Path, other: Path) -> list[str]:
     """Variables of results.nc whose last rows, as many as the shorter file has, are not the same to the last bit."""
     with xr.open_dataset(one / "results.nc") as a, xr.open_dataset(other / "results.nc") as b:
-        found = []
+        differing = []
         for name in a.variables:
             n = len(b[name]) if b[name].dims[:1] in (("time",), ("step",)) else 0
             x, y = (v[name].values[-n:] if n else v[name].values for v in (a, b))
             if not _same(x, y):
-                found.append(str(name))
-        return found
+                differing.append(str(name))
+        return differing
 
 
 def summary(folder: Path) -> dict[str, Any]:
     """Less what it took in seconds, and the versions of what was imported by then."""
-    found: dict[str, Any] = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    return {name: value for name, value in found.items() if name not in ("seconds", "processor_seconds", "versions")}
+    data: dict[str, Any] = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    return {name: value for name, value in data.items() if name not in ("seconds", "processor_seconds", "versions")}

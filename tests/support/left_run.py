@@ -21,9 +21,9 @@ def leave_after(
     """Run the scene; SIGTERM comes while so many steps have been recorded."""
     usual, taken = Observer.record, 0
 
-    def record(self: Observer, *reported: Any, **more: Any) -> None:
+    def record(self: Observer, *arguments: Any, **more: Any) -> None:
         nonlocal taken
-        usual(self, *reported, **more)
+        usual(self, *arguments, **more)
         taken += 1
         if taken == steps:
             signal.raise_signal(signal.SIGTERM)

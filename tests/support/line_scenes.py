@@ -56,8 +56,8 @@ def mooring(
 
 def with_line_named(name: str) -> dict[str, Any]:
     """The mooring whose line `east` has another name."""
-    found: dict[str, Any] = json.loads(json.dumps(mooring()).replace('"east"', json.dumps(name)))
-    return found
+    scene: dict[str, Any] = json.loads(json.dumps(mooring()).replace('"east"', json.dumps(name)))
+    return scene
 
 
 def shaken(duration: float = 1.0, time_step: float = 0.05) -> dict[str, Any]:
@@ -68,13 +68,13 @@ def shaken(duration: float = 1.0, time_step: float = 0.05) -> dict[str, Any]:
 
 def as_line(scene: Mapping[str, Any]) -> dict[str, Any]:
     """A riser's scene with this as the only one of its lines, `only`."""
-    found = {key: value for key, value in scene.items() if key not in ("riser", "dimension")}
+    line = {key: value for key, value in scene.items() if key not in ("riser", "dimension")}
     stages = [dict(stage) for stage in scene["stages"]]
     for stage in stages:
         of_line = {key: stage.pop(key) for key in ("move", "motion", "loads") if key in stage}
         stage |= {"lines": {"only": of_line}} if of_line else {}
     soil = {"soil": scene["soil"] | {"line": "only"}} if scene.get("soil") else {}
-    return found | {"lines": {"only": scene["riser"]}, "stages": stages} | soil
+    return line | {"lines": {"only": scene["riser"]}, "stages": stages} | soil
 
 
 def hung_over_clay(*stages: Mapping[str, Any], model: str = "block") -> dict[str, Any]:
@@ -113,8 +113,8 @@ def lazy_s(*stages: Mapping[str, Any], **more: Any) -> dict[str, Any]:
     """The riser over its arch."""
     lines, joints = {}, {}
     for name, (kind, length, elements, place, arm, ends_up) in LAZY_S.items():
-        held = {"position": list(place)}
-        start, end = (held, "free") if ends_up else ("free", held)
+        point = {"position": list(place)}
+        start, end = (point, "free") if ends_up else ("free", point)
         lines[name] = line("pipe" if kind is PIPE else "rope", length, elements, start, end)
         joints[f"{name}_hung"] = pin(name, "end" if ends_up else "start", "arch", offset=list(arm))
     types, water = {"pipe": PIPE, "rope": ROPE}, {"density": RHO}
@@ -129,15 +129,15 @@ def lazy_s_by_catenaries() -> tuple[Array, dict[str, tuple[float, float]]]:
     def hung(at: Array) -> dict[str, tuple[Array, Array, Array]]:
         """Of each line: arm in the plane, force on the arch and at the other end."""
         c, s = math.cos(at[2]), math.sin(at[2])
-        turn, found = np.array([[c, -s], [s, c]]), {}
+        turn, lines = np.array([[c, -s], [s, c]]), {}
         for name, (kind, length, _, place, arm, ends_up) in LAZY_S.items():
             lever, other = turn @ np.array(arm)[[0, 2]], np.array(place)[[0, 2]]
             ends = (other, at[:2] + lever) if ends_up else (at[:2] + lever, other)
             forces = pulls(ends[0], ends[1], kind["submerged_weight"], kind["EA"], length)
-            found[name] = lever, forces[int(ends_up)], forces[int(not ends_up)]
+            lines[name] = lever, forces[int(ends_up)], forces[int(not ends_up)]
         for key, force in (("centre_of_gravity", -ARCH["mass"] * G), ("centre_of_buoyancy", RHO * G * ARCH["volume"])):
-            found[key] = turn @ np.array(ARCH[key])[[0, 2]], np.array([0.0, force]), np.zeros(2)
-        return found
+            lines[key] = turn @ np.array(ARCH[key])[[0, 2]], np.array([0.0, force]), np.zeros(2)
+        return lines
 
     def unbalanced(at: Array) -> Array:
         levers, forces = (np.array([each[n] for each in hung(at).values()]) for n in (0, 1))

@@ -127,8 +127,8 @@ def require_kernels(at: Sample, parts: list[Any]) -> None:
         part.residual(state, expected)
     for group in ("inertia", "force", "end"):
         values = getattr(expected, group)
-        found = getattr(compiled.line.forces, group).ravel()
-        assert np.abs(found - values).max() <= 1e-12 * np.abs(expected.force).max()
+        forces = getattr(compiled.line.forces, group).ravel()
+        assert np.abs(forces - values).max() <= 1e-12 * np.abs(expected.force).max()
     assert error(compiled.dense(), tangent(parts, state, WEIGHTS)) < 1e-12
     np.testing.assert_allclose(compiled.line.dofs.sizes.ravel(), at.line.magnitudes(state), rtol=1e-15)
     begun = State(before.t, 0.0 * before.u, before.v, before.a)
@@ -156,8 +156,8 @@ def require_mass(at: Sample, parts: list[Any]) -> None:
         for part in inertial:
             part.tangent(State.at_rest(accepted.t, at.line.size), MASS_ALONE, {at.line.name: mass.K})
         accelerations = mass.accelerations(force)
-        found, scale = loop.mass.accelerations(accepted.t, force), np.abs(accelerations).max()
-        np.testing.assert_allclose(found, accelerations, rtol=0.0, atol=1e-10 * scale)
+        computed, scale = loop.mass.accelerations(accepted.t, force), np.abs(accelerations).max()
+        np.testing.assert_allclose(computed, accelerations, rtol=0.0, atol=1e-10 * scale)
     expected = Forces.zeros(at.line.size)
     for part in parts:
         if "E" not in part.traits.groups:
@@ -179,40 +179,40 @@ def require_tangles(dimension: int) -> None:
     whole turns.
     """
     at, anything = sample(dimension, shaken=False), StopLimits(0.0, np.inf, 0.0, 1, 0, True)
-    line, parts, reported = at.line, [at.beam()], []
+    line, parts, messages = at.line, [at.beam()], []
     for node, turn in ((0, 0.0), (1, 0.1), (1, 0.3), (1, 2.0), (line.nodes - 1, 2.0), (line.nodes - 1, -3.5)):
         state = at.state(1, size=0.0)
         line.nodal(state.u)[node, -1] = turn
         compiled = Compiled(at, parts, state, state)
         compiled.riser.begin(state, np.zeros(line.size), WEIGHTS, anything)
         assert compiled.riser.solve() == CONVERGED
-        reported.append(line.folding(*compiled.line.folding))
-        assert reported[-1] == line.inadmissible(state, at.state(1, size=0.0))
-    assert reported[0] == reported[1] == ""
-    assert len(set(reported)) == {2: 4, 3: 5}[dimension]
+        messages.append(line.folding(*compiled.line.folding))
+        assert messages[-1] == line.inadmissible(state, at.state(1, size=0.0))
+    assert messages[0] == messages[1] == ""
+    assert len(set(messages)) == {2: 4, 3: 5}[dimension]
 
 
-def require_element_residual(told: StepResults, line: Line, parts: list[Any], accepted: State) -> None:
+def require_element_residual(results: StepResults, line: Line, parts: list[Any], accepted: State) -> None:
     """What acts within the elements is what the parts' methods tell."""
     expected = element_residual(line, parts, accepted)
-    found, scale = told.element_residual(line, accepted), np.abs(expected).max()
-    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-12 * scale)
+    residual, scale = results.element_residual(line, accepted), np.abs(expected).max()
+    np.testing.assert_allclose(residual, expected, rtol=0.0, atol=1e-12 * scale)
 
 
 def require_section_forces(compiled: TimedStage, snes: TimedStage) -> None:
     """Section forces at the state solved for last are those by the parts' methods, at that state and by SNES."""
-    line, elements, told = compiled.assembly.riser.line, compiled.assembly.riser.elements, compiled.newton.lines
-    assert told is not None
+    line, elements, line_results = compiled.assembly.riser.line, compiled.assembly.riser.elements, compiled.newton.lines
+    assert line_results is not None
     state, other = compiled.stepper.now, snes.stepper.now
-    found = SectionForces(line, elements, told.section_input(line, state))
+    forces = SectionForces(line, elements, line_results.section_input(line, state))
     parts = acting_on(line, compiled.system.model.parts)
     acting = viscous_residual(line, parts, state), nodal_residual(line, parts, state)
     own = section_forces(line, elements, state, element_residual(line, parts, state), *acting)
     other_line = snes.assembly.riser.line
     by_snes = SectionForces(other_line, elements, snes.newton.accepted.section_input(other_line, other))
     for name in SECTION_FORCES:
-        values = np.asarray(getattr(found, name))
-        scale = np.abs(found.moment if name == "end_moment" else values).max()  # pinned ends have none
+        values = np.asarray(getattr(forces, name))
+        scale = np.abs(forces.moment if name == "end_moment" else values).max()  # pinned ends have none
         np.testing.assert_allclose(values, getattr(own, name), rtol=0.0, atol=1e-10 * scale, err_msg=name)
         np.testing.assert_allclose(values, getattr(by_snes, name), rtol=0.0, atol=1e-5 * scale, err_msg=name)
 
@@ -222,12 +222,12 @@ def require_contact_results(stage: TimedStage) -> None:
     for contact in stage.assembly.contacts:
         assert isinstance(contact, SeabedContact)
         sizes = stage.assembly.riser.line.nodes, contact.along.arc.size
-        found = ContactResults.within(stage.newton.accepted.contact_results(contact, stage.stepper.now), *sizes)
+        results = ContactResults.within(stage.newton.accepted.contact_results(contact, stage.stepper.now), *sizes)
         expected = ContactResults.within(contact.results(stage.stepper.now), *sizes)
         assert expected.force.any()
         for name, values in expected._asdict().items():
             scale = np.abs(values[np.isfinite(values)]).max()
-            np.testing.assert_allclose(getattr(found, name), values, rtol=0.0, atol=1e-9 * scale, err_msg=name)
+            np.testing.assert_allclose(getattr(results, name), values, rtol=0.0, atol=1e-9 * scale, err_msg=name)
 
 
 def require_iterations(compiled: TimedStage, snes: TimedStage) -> None:
@@ -246,13 +246,13 @@ def require_steps_of_snes(case: str) -> None:
     require_iterations(compiled, snes)
     place, expected_place = (stage.assembly.riser.line.positions3(stage.stepper.before) for stage in (compiled, snes))
     np.testing.assert_allclose(place, expected_place, rtol=0.0, atol=1e-9)
-    found, expected = compiled.stepper, snes.stepper
-    parts = acting_on(compiled.assembly.riser.line, found.system.model.parts)
-    require_element_residual(compiled.newton.accepted, compiled.assembly.riser.line, parts, found.now)
+    computed, expected = compiled.stepper, snes.stepper
+    parts = acting_on(compiled.assembly.riser.line, computed.system.model.parts)
+    require_element_residual(compiled.newton.accepted, compiled.assembly.riser.line, parts, computed.now)
     require_section_forces(compiled, snes)
     require_contact_results(compiled)
-    np.testing.assert_allclose(found.before.v, expected.before.v, rtol=0.0, atol=1e-7)
-    assert found.energy.total == pytest.approx(expected.energy.total, rel=1e-9)
+    np.testing.assert_allclose(computed.before.v, expected.before.v, rtol=0.0, atol=1e-7)
+    assert computed.energy.total == pytest.approx(expected.energy.total, rel=1e-9)
     assert compiled._taken.turned.keys() == snes._taken.turned.keys()
     for name, work in snes._taken.turned.items():
         mine = [*vars(compiled._taken.turned[name]).values()]

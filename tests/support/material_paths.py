@@ -38,11 +38,11 @@ def random_paths(
     before = at_start(law, n)
     for step in range(steps):
         increment = 10.0 ** rng.uniform(-7.0, largest, (n, 1)) * rng.standard_normal((n, 6))
-        found = law.update(increment, before.history, seconds[step % len(seconds)])
-        assert all(np.isfinite(values).all() for values in found), step
-        lost = dissipated(initial, increment, before, found)
-        scale = np.abs(found.stored) + mandel.product(np.abs(found.stress), np.abs(increment)) + 1e-9
+        update = law.update(increment, before.history, seconds[step % len(seconds)])
+        assert all(np.isfinite(values).all() for values in update), step
+        lost = dissipated(initial, increment, before, update)
+        scale = np.abs(update.stored) + mandel.product(np.abs(update.stress), np.abs(increment)) + 1e-9
         assert np.min(lost / scale) > -1e-10, step
-        worst = max(worst, float(law.overstress(found.stress).max()))
-        before = found
+        worst = max(worst, float(law.overstress(update.stress).max()))
+        before = update
     return worst

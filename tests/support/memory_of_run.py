@@ -22,9 +22,9 @@ def main(scene: str, folder: Path) -> None:
     from riser_soil.scene.reader import read_scene
 
     record._FLUSH_EVERY, record._FLUSH_SHARE = 0.02, 1.0
-    found: list[float] = []
-    watched_run(read_scene(scene), folder, lambda: found.append(resident()))
-    (folder / "memory.json").write_text(json.dumps(found), encoding="utf-8")
+    peaks: list[float] = []
+    watched_run(read_scene(scene), folder, lambda: peaks.append(resident()))
+    (folder / "memory.json").write_text(json.dumps(peaks), encoding="utf-8")
 
 
 if __name__ == "__main__":

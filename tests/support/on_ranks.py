@@ -64,8 +64,8 @@ class Job:
 
     def kill(self) -> None:
         """All of it at once, as an operating system does that runs out of memory."""
-        while left := self.processes():
-            for pid in left:
+        while remaining := self.processes():
+            for pid in remaining:
                 _kill(pid)
             time.sleep(0.01)
 

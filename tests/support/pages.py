@@ -37,9 +37,9 @@ def equations(page: Path) -> list[str]:
     return [a or b for a, b in re.findall(r"\$\$(.+?)\$\$|\$([^$]+)\$", prose, re.DOTALL)]
 
 
-def same_figures(told: str, computed: str) -> bool:
+def same_figures(shown: str, computed: str) -> bool:
     """Equal words; equal numbers but for the last digit that is told."""
-    (words, numbers), (others, values) = (_apart(each) for each in (told, computed))
+    (words, numbers), (others, values) = (_apart(each) for each in (shown, computed))
     close = (abs(float(a) - float(b)) <= 1.01 * _last_digit(a) for a, b in zip(numbers, values, strict=False))
     return words == others and all(close)
 
@@ -49,9 +49,9 @@ def compare(texts: Mapping[str, str], write: bool = False) -> None:
     if write:
         fill_pages(texts)
     there = [places(page.read_text(encoding="utf-8")) for page in all_pages()]
-    told = [(name, text) for page in there for name, each in page.items() for text in each]
-    assert texts.keys() <= {name for name, _ in told}
-    for name, text in told:
+    stated = [(name, text) for page in there for name, each in page.items() for text in each]
+    assert texts.keys() <= {name for name, _ in stated}
+    for name, text in stated:
         assert name not in texts or same_figures(text, texts[name]), f"{text} is told of {name}, and is {texts[name]}"
 
 

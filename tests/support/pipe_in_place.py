@@ -102,10 +102,10 @@ def resistance(scene: Mapping) -> Array:
     """V/(D su) at the end of each step."""
     assembly = built(scene)
     pressing = [part for part in (soil_under(assembly).contact, soil_under(assembly).friction) if part is not None]
-    found: list[float] = []
+    forces: list[float] = []
 
     def watch(system: System, step: AcceptedStep) -> None:
-        found.append(-sum(float(part.force_on_soil(step.solution.state)[2]) for part in pressing))
+        forces.append(-sum(float(part.force_on_soil(step.solution.state)[2]) for part in pressing))
 
     take(assembly, assembly.scene.stages[0], watch=watch)
-    return np.array(found) / (float(scene["soil"]["block"]["x"][1]) * D * SU)
+    return np.array(forces) / (float(scene["soil"]["block"]["x"][1]) * D * SU)

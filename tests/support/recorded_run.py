@@ -57,8 +57,8 @@ def _largest(name: str, arc: Array, values: Array) -> dict[str, Any]:
 
 def _code(arc: Array, used: Array) -> dict[str, Any]:
     """One check of one line type, as if it were all of them."""
-    found = {f"{name}_utilisation": used for name in ("code", *CRITERIA)}
-    return found | {"code_largest": np.array([used.max()]), "code_place": np.array([arc[used.argmax()]])}
+    values = {f"{name}_utilisation": used for name in ("code", *CRITERIA)}
+    return values | {"code_largest": np.array([used.max()]), "code_place": np.array([arc[used.argmax()]])}
 
 
 def _wall(tension: Array, moment: Array) -> dict[str, Any]:
@@ -78,9 +78,9 @@ def _wall(tension: Array, moment: Array) -> dict[str, Any]:
     }
 
 
-def stacked(seen: Sequence[Record]) -> Record:
+def stacked(records: Sequence[Record]) -> Record:
     """Single instants as many."""
-    return Record(seen[0].arc, stacked_values(seen))
+    return Record(records[0].arc, stacked_values(records))
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ class Catenary:
             **_code(arc, tension / 3.0e5 + 10.0 * curvature),
         )
 
-    def seen(self, arc: Array) -> Record:
+    def record(self, arc: Array) -> Record:
         return Record(arc, self.riser(arc) | self.touch(arc))
 
     def touch(self, arc: Array) -> dict[str, Any]:
@@ -215,7 +215,7 @@ def step(
 ) -> None:
     """Tells the recorder of an accepted step."""
     line, health = Catenary(32.0, 30.0 - 0.01 * t), StepStatistics(3, 0.1, 1e-6, 0)
-    recorder.accept([StepRecord(t, health, _ledger(t))], [due], {"": stacked([line.seen(CATENARY_ARC)])}, pictured)
+    recorder.accept([StepRecord(t, health, _ledger(t))], [due], {"": stacked([line.record(CATENARY_ARC)])}, pictured)
 
 
 def record(
@@ -250,7 +250,7 @@ def record(
                 recorder.accept(
                     [StepRecord(t, health, _ledger(heave)) for t, heave in zip(now, heaves, strict=True)],
                     [schedule.due(t, t == times[-1]) for t in now],
-                    {"": stacked([line.seen(arc) for line in lines])},
+                    {"": stacked([line.record(arc) for line in lines])},
                     None if mesh is None else soil(mesh, lines[-1].s0),
                 )
         recorder.add_seconds({"newton": 1.25})

@@ -45,9 +45,9 @@ def tip(rod: Rod, force: Array, moment: Array, steps: int = 6) -> Array:
             start = np.concatenate([np.zeros(3), rod.frame0.ravel(), m])
             return solve_ivp(equations(rod, factor * force), (0.0, rod.length), start, **TOLERANCES).y[:, -1]
 
-        found = root(lambda m, end=end, factor=factor: end(m)[12:] - factor * moment, clamp, tol=1e-11)
-        clamp = found.x
-        assert np.abs(found.fun).max() < 1e-8
+        solution = root(lambda m, end=end, factor=factor: end(m)[12:] - factor * moment, clamp, tol=1e-11)
+        clamp = solution.x
+        assert np.abs(solution.fun).max() < 1e-8
     return end(clamp)[:3]
 
 

@@ -20,9 +20,9 @@ def lines_with(text: str | Iterable[str], *words: str) -> list[str]:
 def line_with(text: str | Iterable[str], *words: str) -> str:
     """The only one of them."""
     lines = text.splitlines() if isinstance(text, str) else [*text]
-    found = lines_with(lines, *words)
-    assert len(found) == 1, f"{len(found)} lines, not 1, with {words} in {lines}"
-    return found[0]
+    matches = lines_with(lines, *words)
+    assert len(matches) == 1, f"{len(matches)} lines, not 1, with {words} in {lines}"
+    return matches[0]
 
 
 def _whole(word: str) -> str:

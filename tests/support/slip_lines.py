@@ -64,13 +64,13 @@ def smooth_strips(lines: int, reach: float) -> tuple[Array, Array]:
 
 def rough_strips(lines: int, reach: float) -> tuple[Array, Array]:
     """The same of rough strips: each line of family b that comes to ψ = π/2 bounds the wedge of one."""
-    found = field(lines, reach, ROUGH)
-    beside = _cumulated(np.array([line[-1] for line in found]))  # what the strip bears where the soil slides along it
+    points = field(lines, reach, ROUGH)
+    beside = _cumulated(np.array([line[-1] for line in points]))  # what the strip bears where the soil slides along it
     strips = [(0.0, 0.0)]
     for ray in range(1, lines + 1):
-        strips += _wedge(np.array([line[number + ray] for number, line in enumerate(found)]), 0.0)
+        strips += _wedge(np.array([line[number + ray] for number, line in enumerate(points)]), 0.0)
     for first in range(1, lines):
-        below = [line[lines + first + number] for number, line in enumerate(found) if number >= first]
+        below = [line[lines + first + number] for number, line in enumerate(points) if number >= first]
         strips += _wedge(np.array(below), beside[first])
     half_widths, loads = np.array(strips).T
     return half_widths, loads
@@ -81,14 +81,14 @@ def field(lines: int, reach: float, at_strip: float, k: float = 1.0) -> list[Lin
     through point j − 1 of the line before it.
     """
     fan = [Point(0.0, 0.0, 1.0 + 2.0 * psi, psi) for psi in np.linspace(0.0, at_strip, lines + 1)]
-    found = [fan]
+    rows = [fan]
     for x in np.linspace(0.0, reach, lines + 1)[1:]:
         line = [Point(float(x), 0.0, 1.0, 0.0)]
-        for inner in found[-1]:
+        for inner in rows[-1]:
             line.append(_crossing(line[-1], inner, k))
         line.append(_at_strip(line[-1], at_strip, k))
-        found.append(line)
-    return found
+        rows.append(line)
+    return rows
 
 
 def _crossing(a: Point, b: Point, k: float) -> Point:

@@ -40,11 +40,11 @@ def after(law: NormalLaw, path: Array) -> Array:
 def forces(law: NormalLaw, path: Array, history: Array | None = None) -> Array:
     """Force at each point of a path that is taken step by step."""
     history = law.initial_history((1,)) if history is None else history
-    found = np.empty(path.size)
+    values = np.empty(path.size)
     for i, z in enumerate(path):
         answer = law.update(np.array([z]), history)
-        found[i], history = answer.force[0], answer.history
-    return found
+        values[i], history = answer.force[0], answer.history
+    return values
 
 
 def work(path: Array, force: Array, begin: float = 0.0) -> Array:

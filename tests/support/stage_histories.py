@@ -43,7 +43,7 @@ class StageHistory:
 def stage_histories(scene: Mapping | Scene) -> list[StageHistory]:
     """Take all stages of a scene without files."""
     assembly = build(scene if isinstance(scene, Scene) else scene_from_mapping(scene), MPI.COMM_SELF)
-    before, reported = State.at_rest(0.0, assembly.size), list[StageHistory]()
+    before, histories = State.at_rest(0.0, assembly.size), list[StageHistory]()
     for stage in assembly.scene.stages:
         now = StageHistory()
 
@@ -57,8 +57,8 @@ def stage_histories(scene: Mapping | Scene) -> list[StageHistory]:
             now.last = riser_record(assembly.riser, stepper)
 
         before = run_stage(assembly, stage, before, Watcher(watch), Timer.new())
-        reported.append(now)
-    return reported
+        histories.append(now)
+    return histories
 
 
 def distance(a: Array, b: Array) -> float:

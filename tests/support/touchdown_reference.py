@@ -58,9 +58,9 @@ class Rigid:
         self.hose = hose
         xi = np.linspace(0.0, 1.0, 400)
         shape, unknowns = self._guess(xi)
-        self.found = solve_bvp(self._rates, self._ends, xi, shape, unknowns, tol=TOLERANCE, max_nodes=100_000)
-        assert self.found.success, self.found.message
-        self.H, self.R, self.s0 = (float(p) for p in self.found.p * self._units)
+        self.solution = solve_bvp(self._rates, self._ends, xi, shape, unknowns, tol=TOLERANCE, max_nodes=100_000)
+        assert self.solution.success, self.solution.message
+        self.H, self.R, self.s0 = (float(p) for p in self.solution.p * self._units)
 
     @cached_property
     def _units(self) -> Array:
@@ -97,9 +97,9 @@ class Rigid:
     def at_rest(self) -> AtRest:
         h = self.hose
         hanging = h.length - self.s0
-        theta = float(self.found.sol(1.0)[2])
+        theta = float(self.solution.sol(1.0)[2])
         V = h.w * hanging - self.R
-        xi, moment = largest(lambda at: self.found.sol(at)[3], np.linspace(0.0, 1.0, 2001))
+        xi, moment = largest(lambda at: self.solution.sol(at)[3], np.linspace(0.0, 1.0, 2001))
         tension = self.H * np.cos(theta) + V * np.sin(theta)
         return AtRest(self.H, float(tension), self.s0, self.R, moment, self.s0 + xi * hanging)
 
@@ -118,20 +118,20 @@ class Winkler:
         s, shape = self._guess(rigid)
         unknown = np.array([rigid.H / (hose.w * hose.length)])
         for tolerance in (1e-4, 1e-5, 1e-6, 1e-7):
-            self.found = solve_bvp(
+            self.solution = solve_bvp(
                 self._rates, self._ends, s, shape, unknown, fun_jac=self._derivatives, tol=tolerance, max_nodes=100_000
             )
-            assert self.found.success, self.found.message
+            assert self.solution.success, self.solution.message
             s = self._mesh()
-            shape, unknown = self.found.sol(s), self.found.p
-        self.H = float(self.found.p[0]) * hose.w * hose.length
+            shape, unknown = self.solution.sol(s), self.solution.p
+        self.H = float(self.solution.p[0]) * hose.w * hose.length
 
     @cached_property
     def at_rest(self) -> AtRest:
         s, share, f = self.forces
         touchdown, reaction = equivalent_point(s, share, f, self.hose.w)
-        theta, _, V = self.found.sol(self.hose.length)[2:]
-        arc, moment = largest(lambda at: self.found.sol(at)[3], np.linspace(touchdown, self.hose.length, 4001))
+        theta, _, V = self.solution.sol(self.hose.length)[2:]
+        arc, moment = largest(lambda at: self.solution.sol(at)[3], np.linspace(touchdown, self.hose.length, 4001))
         tension = self.H * np.cos(theta) + V * np.sin(theta)
         return AtRest(self.H, float(tension), touchdown, reaction, moment, arc)
 
@@ -139,16 +139,16 @@ class Winkler:
     def forces(self) -> tuple[Array, Array, Array]:
         """Gauss points' arc and share of the arc [m], and f there [N/m]."""
         x, weight = np.polynomial.legendre.leggauss(5)
-        first, size = self.found.x[:-1, None], np.diff(self.found.x)[:, None]
+        first, size = self.solution.x[:-1, None], np.diff(self.solution.x)[:, None]
         s, share = (first + 0.5 * size * (1.0 + x)).ravel(), (0.5 * size * weight).ravel()
-        return s, share, self.hose.w * self._force(self.found.sol(s)[1])
+        return s, share, self.hose.w * self._force(self.solution.sol(s)[1])
 
     @property
     def contact_end(self) -> float:
         """The last place that feels the floor [m]."""
-        s, z = self.found.x, self.found.y[1] - self.corner
+        s, z = self.solution.x, self.solution.y[1] - self.corner
         i = int(np.flatnonzero(z < 0.0)[-1])
-        return float(brentq(lambda at: self.found.sol(at)[1] - self.corner, s[i], s[i + 1]))
+        return float(brentq(lambda at: self.solution.sol(at)[1] - self.corner, s[i], s[i + 1]))
 
     def _guess(self, rigid: Rigid) -> tuple[Array, Array]:
         """The rigid floor's shape with the layer of a stiff bed: under the force R at s0, with b⁴ = k/(4 EI) and
@@ -158,7 +158,7 @@ class Winkler:
         b = (0.25 * self.k / h.EI) ** 0.25
         near = s0 + np.linspace(-12.0, 6.0, 300) / b
         s = np.unique(np.clip(np.concatenate([np.linspace(0.0, h.length, 800), near]), 0.0, h.length))
-        x, z, theta, M = rigid.found.sol(np.maximum(s - s0, 0.0) / (h.length - s0))
+        x, z, theta, M = rigid.solution.sol(np.maximum(s - s0, 0.0) / (h.length - s0))
         t = np.maximum(b * (s0 - s) + 1.0, 0.0)
         C, S = (2.0 * b * R / self.k * np.exp(-t) * f(t) for f in (np.cos, np.sin))
         lying = t > 0.0
@@ -180,16 +180,16 @@ class Winkler:
 
     def _corners(self) -> Array:
         """Where f's derivatives jump; the collocation needs a point there."""
-        s, places = self.found.x, []
+        s, place, places = self.solution.x, self.solution.sol, []
         for level in {self.corner, -self.corner}:
-            over = self.found.y[1] - level
+            over = self.solution.y[1] - level
             for i in np.flatnonzero(over[1:] * over[:-1] < 0.0):
-                places.append(brentq(lambda at, level=level: self.found.sol(at)[1] - level, s[i], s[i + 1], xtol=1e-13))
+                places.append(brentq(lambda at, level=level: place(at)[1] - level, s[i], s[i + 1], xtol=1e-13))
         return np.array(places)
 
     def _mesh(self) -> Array:
         """The points of the solution, those beside a corner moved there."""
-        s, corners = self.found.x, self._corners()
+        s, corners = self.solution.x, self._corners()
         if corners.size:
             apart = np.abs(s[:, None] - corners).min(axis=1) > 1e-6
             apart[[0, -1]] = True

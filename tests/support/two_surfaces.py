@@ -54,9 +54,9 @@ def fading_backstress(h: float) -> YieldRange:
     return YieldRange(lambda distance, began: h * distance / (1.0 - SHARE))
 
 
-def lost_a_cycle(law: YieldRange, held: float, amplitude: float, cycles: int = 14) -> float:
+def lost_a_cycle(law: YieldRange, mean_strain: float, amplitude: float, cycles: int = 14) -> float:
     """Share of the mean stress that a cycle of strain takes, down by twice the amplitude from what is held."""
-    law.strain(held)
+    law.strain(mean_strain)
     turns = [(law.strain(-2.0 * amplitude), law.strain(2.0 * amplitude)) for _ in range(cycles)]
     first, last = (sum(turns[n]) for n in (0, -1))
     return float(1.0 - (last / first) ** (1.0 / (cycles - 1)))

@@ -21,11 +21,11 @@ Frame = dict[
 
 def read_by_vtk(path: Path) -> tuple[list[float], list[Frame]]:
     """Times and frames."""
-    found = path.with_suffix(".npz")
-    subprocess.run([sys.executable, __file__, str(path), str(found)], check=True)
-    with np.load(found) as store:
+    file = path.with_suffix(".npz")
+    subprocess.run([sys.executable, __file__, str(path), str(file)], check=True)
+    with np.load(file) as store:
         arrays = {key: store[key] for key in store.files}
-    found.unlink()
+    file.unlink()
     times = arrays.pop("times").tolist()
     frames: list[Frame] = [{} for _ in times]
     for key, values in arrays.items():
@@ -39,23 +39,23 @@ def times_by_vtk(paths: list[Path]) -> list[list[float]]:
     call = [sys.executable, __file__, "--times", *map(str, paths)]
     done = subprocess.run(call, check=True, capture_output=True, text=True)
     assert not done.stderr, done.stderr
-    found: list[list[float]] = json.loads(done.stdout)
-    return found
+    times: list[list[float]] = json.loads(done.stdout)
+    return times
 
 
 def tell_times(*paths: str) -> None:
     """Runs may have ended, or met a full disk, when frames were in the VTKHDF file and not yet in the XDMF file."""
-    found = []
+    frames = []
     for path in paths:
         times, theirs = times_in(path), times_in(beside(path))
         assert theirs[: len(times)] == (times if theirs else times[1:])
         for number in (len(times) - 1,) if times else ():
             same(look(path, number), look(beside(path), number))
-        found.append(times)
-    print(json.dumps(found))
+        frames.append(times)
+    print(json.dumps(frames))
 
 
-def main(path: str, found: str) -> None:
+def main(path: str, output: str) -> None:
     times = times_in(path)
     same_times(path, times)
     arrays: Frame = {"times": np.array(times)}
@@ -63,7 +63,7 @@ def main(path: str, found: str) -> None:
         frame = look(path, number)
         same(frame, look(beside(path), number))
         arrays |= {f"{number}/{name}": values for name, values in frame.items()}
-    np.savez(found, **arrays)
+    np.savez(output, **arrays)
 
 
 def beside(path: str) -> str:
@@ -100,10 +100,10 @@ def look(path: str, number: int) -> Frame:
     grid = pv.wrap(reader.GetOutputDataObject(0))
     sizes = grid.compute_cell_sizes(length=False, area=False)
     assert grid.n_points > 0
-    return dict(reported(grid, sizes))
+    return dict(values_of(grid, sizes))
 
 
-def reported(grid: Any, sizes: Any) -> Iterator[tuple[str, Any]]:
+def values_of(grid: Any, sizes: Any) -> Iterator[tuple[str, Any]]:
     yield "points", grid.points
     yield "cell_types", np.array([int(grid.GetCellType(cell)) for cell in range(grid.n_cells)])
     yield "volumes", sizes.cell_data["Volume"]

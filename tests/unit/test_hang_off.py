@@ -44,10 +44,10 @@ def hanging(pipe: Mapping = CHAIN, end: str = "end", elements: int = 30, **asked
 
 
 def solved(scene: Mapping) -> tuple[Scene, FoundEnd]:
-    found = hung(scene_from_mapping(scene))
-    assert found is not None
-    (only,) = found.ends
-    return found.scene, only
+    result = hung(scene_from_mapping(scene))
+    assert result is not None
+    (only,) = result.ends
+    return result.scene, only
 
 
 def catenary(layback: float, length: float = L) -> tuple[float, float]:
@@ -62,18 +62,18 @@ def catenary(layback: float, length: float = L) -> tuple[float, float]:
 
 @pytest.mark.parametrize("end", ["end", "start"])
 def test_angle_of_a_cable(end: str) -> None:
-    scene, found = solved(hanging(end=end, angle=20.0))
-    assert found.reached == pytest.approx(20.0, abs=0.002)
-    assert catenary(found.value)[0] == pytest.approx(20.0, abs=0.03), "by the elements"
-    assert getattr(scene.riser, end).position == pytest.approx((found.value, 0.0, RISE))
+    scene, result = solved(hanging(end=end, angle=20.0))
+    assert result.reached == pytest.approx(20.0, abs=0.002)
+    assert catenary(result.value)[0] == pytest.approx(20.0, abs=0.03), "by the elements"
+    assert getattr(scene.riser, end).position == pytest.approx((result.value, 0.0, RISE))
     assert getattr(scene.riser, end).hang_off is None
 
 
 def test_tension_of_a_cable_by_its_length() -> None:
-    scene, found = solved(hanging(tension=1.1e4, by="length"))
-    assert found.reached == pytest.approx(1.1e4, rel=2e-5)
-    assert scene.line.segments[0].length == found.value != L
-    assert catenary(30.0, found.value)[1] == pytest.approx(1.1e4, rel=1e-3), "by the elements"
+    scene, result = solved(hanging(tension=1.1e4, by="length"))
+    assert result.reached == pytest.approx(1.1e4, rel=2e-5)
+    assert scene.line.segments[0].length == result.value != L
+    assert catenary(30.0, result.value)[1] == pytest.approx(1.1e4, rel=1e-3), "by the elements"
 
 
 @pytest.mark.parametrize(
@@ -81,15 +81,15 @@ def test_tension_of_a_cable_by_its_length() -> None:
 )
 def test_a_stiff_riser_has_what_was_asked_for_in_its_run(asked: Mapping, promised: float) -> None:
     """Not what a cable has with that layback, by far more than what is promised."""
-    scene, found = solved(hanging(STIFF, **asked))
-    ((seen,),) = [[history.end] for history in stage_histories(scene)]
-    reached = from_vertical(seen.end_tangent) if "angle" in asked else float(seen.effective_tension[-1])
-    wanted = found.hung.asked.asked
+    scene, result = solved(hanging(STIFF, **asked))
+    ((end,),) = [[history.end] for history in stage_histories(scene)]
+    reached = from_vertical(end.end_tangent) if "angle" in asked else float(end.effective_tension[-1])
+    wanted = result.hung.asked.asked
     assert reached == pytest.approx(wanted, abs=promised)
-    assert abs(catenary(found.value)["tension" in asked] - wanted) > 5.0 * promised
+    assert abs(catenary(result.value)["tension" in asked] - wanted) > 5.0 * promised
     if "by" in asked:
-        assert seen.position[-1] == pytest.approx([30.0, 0.0, RISE]), "the anchor moves"
-        assert seen.position[0] == pytest.approx([30.0 - found.value, 0.0, 0.0])
+        assert end.position[-1] == pytest.approx([30.0, 0.0, RISE]), "the anchor moves"
+        assert end.position[0] == pytest.approx([30.0 - result.value, 0.0, 0.0])
 
 
 def test_several_lines_side_by_side() -> None:
@@ -98,15 +98,15 @@ def test_several_lines_side_by_side() -> None:
     ends = {end: prescribed(x, 5.0, z) for end, x, z in (("start", 0.0, 0.0), ("end", 30.0, RISE))}
     ends["end"]["hang_off"] = {"tension": 1.1e4}
     scene["lines"] = {"first": first, "second": first | ends}
-    found = hung(scene_from_mapping(scene))
-    assert found is not None
-    angle, tension = (catenary(each.value)[n] for n, each in enumerate(found.ends))
+    result = hung(scene_from_mapping(scene))
+    assert result is not None
+    angle, tension = (catenary(each.value)[n] for n, each in enumerate(result.ends))
     assert angle == pytest.approx(20.0, abs=0.03), "by the elements"
     assert tension == pytest.approx(1.1e4, rel=1e-3)
-    end = found.scene.lines["second"].end
+    end = result.scene.lines["second"].end
     assert isinstance(end, Support)
-    assert end.position == pytest.approx((found.ends[1].value, 5.0, RISE))
-    assert found.summary["second"]["asked"] == {"tension": 1.1e4}
+    assert end.position == pytest.approx((result.ends[1].value, 5.0, RISE))
+    assert result.summary["second"]["asked"] == {"tension": 1.1e4}
 
 
 def on_a_weight(**asked: Any) -> Mapping:
@@ -132,13 +132,13 @@ def _between(line: str) -> list[Mapping]:
 @pytest.mark.verify
 def test_lines_that_hang_on_each_other(tmp_path: Path) -> None:
     """Both pull with the same H, and together bear all weight, of which each angle's tangent gives a share."""
-    found = hung(scene_from_mapping(on_a_weight(west=45.0, east=40.0)))
-    assert found is not None
-    assert [each.reached for each in found.ends] == pytest.approx([45.0, 40.0], abs=0.002)
-    assert found.solves < 12
-    weight = 2.0e3 * 9.81 + W * sum(each.value for each in found.ends)
+    result = hung(scene_from_mapping(on_a_weight(west=45.0, east=40.0)))
+    assert result is not None
+    assert [each.reached for each in result.ends] == pytest.approx([45.0, 40.0], abs=0.002)
+    assert result.solves < 12
+    weight = 2.0e3 * 9.81 + W * sum(each.value for each in result.ends)
     H = weight / sum(1.0 / np.tan(np.radians(angle)) for angle in (45.0, 40.0))
-    run(found.scene, tmp_path / "run")
+    run(result.scene, tmp_path / "run")
     for line, angle in (("west", 45.0), ("east", 40.0)):
         end = Run(tmp_path / "run" / line).summary["stages"][0]["final"]["start"]
         assert end["effective_tension"] == pytest.approx(H / np.sin(np.radians(angle)), rel=3e-3), "by the elements"
@@ -153,12 +153,12 @@ def test_a_joint_goes_farther_than_its_line_is_long_at_first(tmp_path: Path) -> 
     scene["line_types"]["pipe"] = IN_SPACE | {"EA": 1.0e7}
     for line in scene["lines"].values():
         line["segments"][0]["length"] = 120.0
-    found = hung(scene_from_mapping(scene))
-    assert found is not None
-    lengths = [each.value for each in found.ends]
+    result = hung(scene_from_mapping(scene))
+    assert result is not None
+    lengths = [each.value for each in result.ends]
     assert lengths[0] == pytest.approx(lengths[1], rel=1e-4)
     assert lengths[0] < np.hypot(50.0, 100.0) / 1.1
-    (tmp_path / "scene.yaml").write_text(dump_scene(found.scene))
+    (tmp_path / "scene.yaml").write_text(dump_scene(result.scene))
     assert read_scene(str(tmp_path / "scene.yaml")).lines["west"].length == lengths[0]
 
 
@@ -172,8 +172,8 @@ def test_a_shifted_aim_that_no_cable_reaches_ends_no_search(monkeypatch: pytest.
         return original(wanted, asked)
 
     monkeypatch.setattr("riser_soil.hang_off.by_cable", at_most)
-    _, found = solved(hanging(STIFF, angle=15.0))
-    assert found.reached == pytest.approx(15.0, abs=0.002)
+    _, result = solved(hanging(STIFF, angle=15.0))
+    assert result.reached == pytest.approx(15.0, abs=0.002)
 
 
 def test_a_vessel_that_another_end_hangs_on_does_not_come_along(tmp_path: Path) -> None:
@@ -193,8 +193,8 @@ def test_a_run_that_ends_early_tells_what_was_found_and_so_does_its_restart(tmp_
     scene["stages"] = [static(), dynamic(0.5, 0.1)]
     given, folder, usual = scene_from_mapping(scene), tmp_path / "run", Observer.record
 
-    def record_and_leave(self: Observer, *reported: Any, **more: Any) -> None:
-        usual(self, *reported, **more)
+    def record_and_leave(self: Observer, *arguments: Any, **more: Any) -> None:
+        usual(self, *arguments, **more)
         signal.raise_signal(signal.SIGTERM)
 
     with pytest.MonkeyPatch.context() as patch:
@@ -224,7 +224,7 @@ def test_what_no_layback_gives_is_reported() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "reported"),
+    ("change", "message"),
     [
         ({"riser": {"end": {"hang_off": {"angle": 10.0, "tension": 1.0}}}}, "angle and tension are both given"),
         ({"riser": {"end": {"hang_off": {}}}}, "neither angle nor tension is given"),
@@ -236,7 +236,7 @@ def test_what_no_layback_gives_is_reported() -> None:
         ({"stages": [static(move={"end": [30.0, 0.0, 41.0]})]}, "moves an end"),
     ],
 )
-def test_what_a_hang_off_needs(change: Mapping, reported: str) -> None:
+def test_what_a_hang_off_needs(change: Mapping, message: str) -> None:
     scene = hanging(angle=20.0)
     for key, value in change.items():
         if key == "riser":
@@ -244,7 +244,7 @@ def test_what_a_hang_off_needs(change: Mapping, reported: str) -> None:
                 scene["riser"][name] = {**scene["riser"][name], **inner} if isinstance(inner, dict) else inner
         else:
             scene[key] = value
-    with pytest.raises(SceneError, match=reported):
+    with pytest.raises(SceneError, match=message):
         scene_from_mapping(scene)
 
 
@@ -255,10 +255,10 @@ def test_commands_tell_what_was_found(tmp_path: Path) -> None:
     assert re.search(r"angle of 20 deg: .*layback of \d", guessed.output.splitlines()[0])
     assert CliRunner().invoke(app, ["run", str(file), "-o", str(tmp_path / "run")]).exit_code == 0
     summary = json.loads((tmp_path / "run" / "summary.json").read_text())
-    reported, final = summary["hang_off"], summary["stages"][0]["final"]
-    assert reported["asked"] == {"angle_deg": 20.0}
-    assert final["end"]["angle_deg"] == pytest.approx(90.0 - reported["reached"], abs=1e-6)
-    assert final["end"]["position"][0] == pytest.approx(reported["value"], rel=1e-12)
+    hang_off, final = summary["hang_off"], summary["stages"][0]["final"]
+    assert hang_off["asked"] == {"angle_deg": 20.0}
+    assert final["end"]["angle_deg"] == pytest.approx(90.0 - hang_off["reached"], abs=1e-6)
+    assert final["end"]["position"][0] == pytest.approx(hang_off["value"], rel=1e-12)
 
 
 def guessed(scene: Mapping, value: float, folder: Path = Path()) -> Scene:
@@ -274,15 +274,15 @@ def test_what_has_its_place_along_the_riser_stays_in_its_segment(end: str) -> No
     row = {"from": 30.0, "to": 50.0, "spacing": 10.0, "mass": 1.0}
     scene["riser"]["attachments"] = [{"at": 10.0, "mass": 5.0}, row]
     scene["stages"] = [static(), static("pulled", loads=[{"at": 50.0, "force": [1.0, 0.0, 0.0]}])]
-    found = guessed(scene, 25.0)
-    places = [each.arcs for each in found.line.attachments]
-    assert found.line.length == pytest.approx(65.0)
+    guess = guessed(scene, 25.0)
+    places = [each.arcs for each in guess.line.attachments]
+    assert guess.line.length == pytest.approx(65.0)
     if end == "end":
         assert places == [pytest.approx((12.5,)), pytest.approx((35.0, 45.0, 55.0))]
-        assert found.stages[1].loads[0].at == pytest.approx(55.0)
+        assert guess.stages[1].loads[0].at == pytest.approx(55.0)
     else:
         assert places == [(10.0,), pytest.approx((30.0, 40.0, 52.5))]
-        assert found.stages[1].loads[0].at == pytest.approx(52.5)
+        assert guess.stages[1].loads[0].at == pytest.approx(52.5)
 
 
 def test_what_carries_an_end_comes_along(tmp_path: Path) -> None:
@@ -313,9 +313,9 @@ def test_the_anchor_stays_on_its_ground(end: str, ground: float, after: float, b
     scene |= {"seabed": {"kind": "rigid", "contact_at": "axis", "profile": [[0.0, 0.0], [50.0, 5.0]]}}
     lower = "start" if end == "end" else "end"
     scene["riser"][lower]["position"] = [0.0, 0.0, ground]
-    found = guessed(scene, 35.0)
-    assert getattr(found.riser, lower).position[2] == pytest.approx(after)
-    assert not conflicts(found)
+    guess = guessed(scene, 35.0)
+    assert getattr(guess.riser, lower).position[2] == pytest.approx(after)
+    assert not conflicts(guess)
 
 
 def test_a_scene_that_cannot_be_with_what_was_found_is_reported(tmp_path: Path) -> None:

@@ -243,11 +243,11 @@ def test_an_interrupted_run_keeps_its_last_accepted_step(number: signal.Signals,
     call = [sys.executable, "-c", script, str(out)]
     done = subprocess.run(call, cwd=ROOT, env=environment(), capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 128 + number
-    reported = (
+    message = (
         f"ended by {number.name} in stage heave at t = 1.3 s; {out} has the results up to there, marked unfinished"
     )
     way_on = f"; go on with: riser-soil run {out}/scene.yaml -o {out} --restart" if sent == BETWEEN else ""
-    assert done.stderr.splitlines()[-1] == reported + way_on
+    assert done.stderr.splitlines()[-1] == message + way_on
     assert (out / "checkpoint.npz").exists() == (sent == BETWEEN), "within a step there is no state to go on from"
     assert len(done.stderr.splitlines()) <= 2, "but for the announcement of kernels"
     run = Run(out)

@@ -37,8 +37,8 @@ def compute(place: Path) -> None:
     from riser_soil.scene.reader import read_scene
     from tests.support.watched_run import watched_run
 
-    found = watched_run(read_scene(ON_BLOCK), place / "results")
-    (place / "watched").write_bytes(pickle.dumps(found))
+    run = watched_run(read_scene(ON_BLOCK), place / "results")
+    (place / "watched").write_bytes(pickle.dumps(run))
 
 
 def wait_for(place: Path) -> WatchedRun:

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from tests.support.above_soil import SCENES, Seen, changes, taken
+from tests.support.above_soil import SCENES, Seen, changes, counted_run
 from tests.support.on_ranks import mpirun
 
 LINEAR = pytest.mark.parametrize("linear", ["direct", "kept", "iterative"])
@@ -17,7 +17,7 @@ FALLS = 16  # steps in which the pipe falls
 
 @cache
 def run(name: str, linear: str, coupled: bool = False) -> Seen:
-    return taken(SCENES[name](linear), coupled)
+    return counted_run(SCENES[name](linear), coupled)
 
 
 @cache
@@ -36,12 +36,12 @@ def require_same_states(one: Seen, other: Seen) -> None:
 @LINEAR
 def test_a_riser_over_soil_asks_for_no_factors_of_it_and_for_no_law(linear: str) -> None:
     """But for the first step: its stability is judged by pivots of soil at rest, whose stress it asks for."""
-    seen = run("hanging", linear)
-    assert all(alone for step in seen.alone for alone in step)
-    assert seen.factorisations[0] <= 1
-    assert seen.laws[0] <= 1
-    assert not any(seen.factorisations[1:])
-    assert not any(seen.laws[1:])
+    counts = run("hanging", linear)
+    assert all(alone for step in counts.alone for alone in step)
+    assert counts.factorisations[0] <= 1
+    assert counts.laws[0] <= 1
+    assert not any(counts.factorisations[1:])
+    assert not any(counts.laws[1:])
     assert sum(run("hanging", linear, coupled=True).factorisations) > 1
 
 
@@ -59,11 +59,11 @@ def test_it_takes_as_many_iterations() -> None:
 @LINEAR
 def test_contact_that_sets_in_within_a_step_is_solved_with_the_soil(linear: str) -> None:
     """It strikes as the step begins, and for the second time within one; the soil yields, and is left alone between."""
-    seen = run("bouncing", linear)
-    assert all(all(step) for step in seen.alone[:FALLS])
-    assert not any(seen.alone[FALLS])
-    assert changes(seen)[True, False] >= 1
-    assert seen.settled[-1] > 0.02
+    counts = run("bouncing", linear)
+    assert all(all(step) for step in counts.alone[:FALLS])
+    assert not any(counts.alone[FALLS])
+    assert changes(counts)[True, False] >= 1
+    assert counts.settled[-1] > 0.02
 
 
 def test_soil_that_is_left_is_brought_to_rest_first() -> None:
@@ -77,7 +77,7 @@ def test_two_ranks_find_the_same(name: str, linear: str) -> None:
     """They choose alike, and as one rank does; whether a step that changes nothing takes an iteration is round-off."""
     both, one = run_on_two_ranks(name, linear), run(name, linear)
     require_same_states(both, one)
-    assert all(alone for seen in (both, one) for step in seen.alone[:FALLS] for alone in step)
+    assert all(alone for counts in (both, one) for step in counts.alone[:FALLS] for alone in step)
     if name == "hanging":
         assert not any(both.laws[1:])
         assert not any(both.factorisations[1:])

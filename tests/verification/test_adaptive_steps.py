@@ -52,9 +52,9 @@ def test_changes_of_size_do_not_shake_the_tension() -> None:
     """
     surge = ("stages.1.duration=21", "riser.segments.0.elements=30")
     reference = adaptive.step_history(*surge, "stages.1.time_step=0.02", scene_file=CATENARY)
-    seen = adaptive.step_history(*surge, "stages.1.time_step=auto", scene_file=CATENARY)
-    assert np.ptp(seen.dt) > 0.2
-    assert adaptive.errors(seen, reference)[0] < 16.0
+    history = adaptive.step_history(*surge, "stages.1.time_step=auto", scene_file=CATENARY)
+    assert np.ptp(history.dt) > 0.2
+    assert adaptive.errors(history, reference)[0] < 16.0
 
 
 @pytest.mark.parametrize(
@@ -114,11 +114,11 @@ def test_hose_in_a_tank_errs_and_costs_no_more_than_with_the_best_fixed_steps() 
     reference = adaptive.swing(adaptive.FINE)
     fixed = [adaptive.swing(dt) for dt in adaptive.STEPS]
     automatic = [adaptive.automatic(tolerance) for tolerance in adaptive.TOLERANCES]
-    costs = np.log([seen.iterations for seen in fixed])
+    costs = np.log([history.iterations for history in fixed])
     for which in (0, 1):
-        by_size = np.log([adaptive.errors(seen, reference)[which] for seen in fixed])
-        by_tolerance = np.log([adaptive.errors(seen, reference)[which] for seen in automatic])
+        by_size = np.log([adaptive.errors(history, reference)[which] for history in fixed])
+        by_tolerance = np.log([adaptive.errors(history, reference)[which] for history in automatic])
         assert np.all(np.diff(by_tolerance) < 0.0)
         same = np.interp(by_tolerance, by_size[::-1], costs[::-1])
-        ratio = np.array([seen.iterations for seen in automatic]) / np.exp(same)
+        ratio = np.array([history.iterations for history in automatic]) / np.exp(same)
         assert ratio.max() < 1.3

@@ -77,9 +77,9 @@ def test_a_buoy_holds_its_mooring_straight_up(dimension: int) -> None:
         scene(static(), attachments=buoy, riser=up, start=prescribed(0.0, 0.0, 0.0), end="free", dimension=dimension)
     )
     lift = (RHO - 200.0) * G
-    found = inside(assembly)
-    assert found.effective_tension == pytest.approx(lift - 100.0 * (20.0 - assembly.riser.line.arc), rel=1e-9)
-    assert found.force[0] == pytest.approx([0.0, 0.0, lift - 2000.0], rel=1e-9, abs=1e-6)
+    tension = inside(assembly)
+    assert tension.effective_tension == pytest.approx(lift - 100.0 * (20.0 - assembly.riser.line.arc), rel=1e-9)
+    assert tension.force[0] == pytest.approx([0.0, 0.0, lift - 2000.0], rel=1e-9, abs=1e-6)
     assert assembly.riser.line.to_global(assembly.riser.line.x)[-1] == pytest.approx([0.0, 0.0, 20.0], abs=1e-3)
 
 
@@ -98,11 +98,11 @@ def test_a_lazy_wave_balances_at_every_node() -> None:
             riser={"initial": "catenary"},
         )
     )
-    found, arc = inside(assembly), assembly.riser.line.arc
+    tension, arc = inside(assembly), assembly.riser.line.arc
     net = (60.0 - 0.12 * RHO) * G
     below = sum(net * (arc > s + 1e-9) for s in places)
-    assert found.force[:, 0] == pytest.approx(np.full(61, found.force[0, 0]), rel=1e-7)
-    assert found.force[:, 2] - found.force[0, 2] == pytest.approx(100.0 * arc + below, rel=1e-7, abs=1e-3)
+    assert tension.force[:, 0] == pytest.approx(np.full(61, tension.force[0, 0]), rel=1e-7)
+    assert tension.force[:, 2] - tension.force[0, 2] == pytest.approx(100.0 * arc + below, rel=1e-7, abs=1e-3)
     height = assembly.riser.line.to_global(assembly.riser.line.x)[:, 2]
     turns = [i for i in range(1, 60) if (height[i] - height[i - 1]) * (height[i + 1] - height[i]) < 0.0]
     assert len(turns) == 3  # sag bend, hog bend, sag bend
@@ -169,8 +169,8 @@ def test_frequency_of_a_mass_on_a_taut_line() -> None:
 
 def test_a_mass_within_an_element_converges() -> None:
     """A cubic can't take the kink in the shear force under what sits within it: third order."""
-    found = np.array([lowest_frequency(15.0, 90.0, n) for n in (151, 303, 607)])
-    errors = np.abs(found / exact_frequency(15.0, 90.0) - 1.0)
+    frequencies = np.array([lowest_frequency(15.0, 90.0, n) for n in (151, 303, 607)])
+    errors = np.abs(frequencies / exact_frequency(15.0, 90.0) - 1.0)
     assert errors[0] < 2e-4
     orders = np.log2(errors[:-1] / errors[1:])
     assert np.all(orders > 2.5), f"errors {errors}, orders {orders}"
@@ -198,12 +198,12 @@ def test_a_pendulum_of_a_rod_and_masses_keeps_time_and_energy(dimension: int) ->
         end="free",
         dimension=dimension,
     )
-    (reported,) = stage_histories(swing)
-    x = np.array([position[-1, 0] for position in reported.position])
+    (history,) = stage_histories(swing)
+    x = np.array([position[-1, 0] for position in history.position])
     crossings = [i for i, (a, b) in enumerate(pairwise(x)) if a > 0.0 >= b or a < 0.0 <= b]
-    times = [reported.t[i] + reported.dt[i] * x[i] / (x[i] - x[i + 1]) for i in crossings]
+    times = [history.t[i] + history.dt[i] * x[i] / (x[i] - x[i + 1]) for i in crossings]
     assert np.diff(times) == pytest.approx([0.5 * period], rel=2e-4)
-    assert np.ptp(reported.energy) < 1e-3 * G * S * (1.0 - np.cos(tilt))
+    assert np.ptp(history.energy) < 1e-3 * G * S * (1.0 - np.cos(tilt))
 
 
 @both_dimensions

@@ -22,7 +22,7 @@ class Ended(NamedTuple):
 
     folder: Path
     status: int
-    reported: list[str]
+    output: list[str]
 
 
 def end_by(number: signal.Signals, folder: Path, runs: int) -> list[Ended]:
@@ -41,8 +41,8 @@ def end_by(number: signal.Signals, folder: Path, runs: int) -> list[Ended]:
             time.sleep(0.02)
         time.sleep(seconds)
         process.send_signal(number)
-        _, reported = process.communicate(timeout=300)
-        return Ended(out, process.returncode, reported.splitlines())
+        _, output = process.communicate(timeout=300)
+        return Ended(out, process.returncode, output.splitlines())
 
     with ThreadPoolExecutor(AT_ONCE) as pool:
         return list(pool.map(end, range(runs), [chance.uniform(0.0, 5.0) for _ in range(runs)]))
@@ -64,46 +64,46 @@ def listens(process: int) -> bool:
 @pytest.mark.verify
 def test_a_hundred_kills(tmp_path: Path) -> None:
     runs = end_by(signal.SIGKILL, tmp_path, 100)
-    left = look([run.folder for run in runs])
-    print(f"nothing yet: {sum(x.rows is None for x in left)}; rows: {sorted(x.rows or 0 for x in left)}")
+    remains = look([run.folder for run in runs])
+    print(f"nothing yet: {sum(x.rows is None for x in remains)}; rows: {sorted(x.rows or 0 for x in remains)}")
     assert {run.status for run in runs} == {-signal.SIGKILL}
-    assert sum((x.frames or 0) > 1 for x in left) >= 50
+    assert sum((x.frames or 0) > 1 for x in remains) >= 50
 
 
 @pytest.mark.verify
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_ten_signals(number: signal.Signals, tmp_path: Path) -> None:
     runs = end_by(number, tmp_path, 10)
-    left = look([run.folder for run in runs])
-    print(f"rows: {[x.rows for x in left]}")
-    for run, found in zip(runs, left, strict=True):
+    remains = look([run.folder for run in runs])
+    print(f"rows: {[x.rows for x in remains]}")
+    for run, outcome in zip(runs, remains, strict=True):
         assert run.status == 128 + number
-        (line,) = run.reported
+        (line,) = run.output
         assert line.startswith(f"ended by {number.name} ")
-        assert (found.rows or 0) == (found.frames or 0)
-    assert sum((x.rows or 0) > 1 for x in left) >= 5
+        assert (outcome.rows or 0) == (outcome.frames or 0)
+    assert sum((x.rows or 0) > 1 for x in remains) >= 5
 
 
 @pytest.mark.verify
 def test_twenty_disks_that_others_fill(tmp_path: Path) -> None:
     """Disks in memory; the scene would fit on them by its estimate."""
 
-    def end(left: int) -> Ended:
-        disk = tmp_path / f"disk-{left}"
+    def end(free: int) -> Ended:
+        disk = tmp_path / f"disk-{free}"
         disk.mkdir()
-        process = start_on_a_filled_disk(tmp_path / f"{left}", disk, left)
-        _, reported = process.communicate(timeout=300)
-        return Ended(tmp_path / f"{left}", process.returncode, reported.splitlines())
+        process = start_on_a_filled_disk(tmp_path / f"{free}", disk, free)
+        _, output = process.communicate(timeout=300)
+        return Ended(tmp_path / f"{free}", process.returncode, output.splitlines())
 
     with ThreadPoolExecutor(AT_ONCE) as pool:
         runs = list(pool.map(end, [400_000 * k for k in range(20)]))
     for run in runs:
-        assert run.status == 4, run.reported
-        (line,) = run.reported
+        assert run.status == 4, run.output
+        (line,) = run.output
         assert "No space left" in line
-    left = look([run.folder for run in runs])
-    print(f"rows: {[x.rows for x in left]}")
-    assert all((x.rows or 0) > 1 for x in left[-6:])
+    remains = look([run.folder for run in runs])
+    print(f"rows: {[x.rows for x in remains]}")
+    assert all((x.rows or 0) > 1 for x in remains[-6:])
 
 
 @pytest.mark.verify
@@ -112,10 +112,10 @@ def test_twenty_files_that_may_not_grow(tmp_path: Path) -> None:
     for size in [1000 * 2**k // 4 for k in range(20)][:14] + [3_000_000 + 300_000 * k for k in range(6)]:
         folders.append(tmp_path / f"{size}")
         process = start(folders[-1], "-c", ON_A_SMALL_DISK, str(size))
-        _, reported = process.communicate(timeout=120)
-        assert process.returncode == 4, reported
-        (line,) = reported.splitlines()
+        _, output = process.communicate(timeout=120)
+        assert process.returncode == 4, output
+        (line,) = output.splitlines()
         line_with([line], "cannot be written:", "File too large")
-    left = look(folders)
-    print(f"rows: {[x.rows for x in left]}")
-    assert all((x.rows or 0) > 1 for x in left[-6:])
+    remains = look(folders)
+    print(f"rows: {[x.rows for x in remains]}")
+    assert all((x.rows or 0) > 1 for x in remains[-6:])

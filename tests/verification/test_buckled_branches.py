@@ -44,8 +44,8 @@ def elastica(ratio: float) -> tuple[float, float]:
 
 @pytest.mark.parametrize(("elements", "EA"), [(20, 1e7), (200, 1e9), pytest.param(1000, 1e7, marks=pytest.mark.verify)])
 def test_columns_of_any_mesh_buckle(elements: int, EA: float, tmp_path: Path) -> None:
-    found, switches = tip(column(elements, 2.0, EA), tmp_path)
-    assert (found[0], found[2]) == pytest.approx(elastica(2.0), abs=2e-4)
+    deflection, switches = tip(column(elements, 2.0, EA), tmp_path)
+    assert (deflection[0], deflection[2]) == pytest.approx(elastica(2.0), abs=2e-4)
     assert switches == 1
 
 
@@ -55,9 +55,9 @@ def test_columns_of_any_mesh_buckle(elements: int, EA: float, tmp_path: Path) ->
 @pytest.mark.parametrize("EA", [1e7, 1e9])
 def test_columns_of_many_elements_buckle(EA: float, dimension: int, elements: int, axis: Any, tmp_path: Path) -> None:
     """Round-off is 0.3 of the load for EA = 1e9 and 2,000 elements: the drag must exceed what it may hide."""
-    found, switches = tip(column(elements, 2.0, EA, dimension, axis), tmp_path)
-    along = float(found @ axis)
-    assert (along, np.linalg.norm(found - along * np.array(axis))) == pytest.approx(elastica(2.0), abs=2e-4)
+    deflection, switches = tip(column(elements, 2.0, EA, dimension, axis), tmp_path)
+    along = float(deflection @ axis)
+    assert (along, np.linalg.norm(deflection - along * np.array(axis))) == pytest.approx(elastica(2.0), abs=2e-4)
     assert switches == 1
 
 
@@ -78,10 +78,10 @@ def unstable_modes(scene: Mapping) -> int:
     solver.solve(right, increment)
     u = np.zeros(assembly.size)
     system.numbering.to_local(increment.array_r, u)
-    found = newton.unstable_modes(State(1.0, u, 0.0 * u, 0.0 * u))
+    modes = newton.unstable_modes(State(1.0, u, 0.0 * u, 0.0 * u))
     for thing in (solver, right, increment, newton, system):
         thing.destroy()
-    return found
+    return modes
 
 
 @pytest.mark.parametrize("axis", [ALONG, SLANTING])
@@ -132,9 +132,9 @@ def test_frame_beyond_its_buckling_load(ratio: float, elements: int, tmp_path: P
 
 @pytest.mark.verify
 def test_frame_of_640_elements(tmp_path: Path) -> None:
-    found, switches = tip(frame(640, 2.0 * 1.0878), tmp_path)
+    deflection, switches = tip(frame(640, 2.0 * 1.0878), tmp_path)
     assert switches == 1
-    assert found[1] > 0.2 * 240.0
+    assert deflection[1] > 0.2 * 240.0
 
 
 @pytest.mark.parametrize("elements", [20, 40, pytest.param(640, marks=pytest.mark.verify)])
@@ -142,8 +142,8 @@ def test_pushed_frame_far_beyond_buckling(elements: int, tmp_path: Path) -> None
     """Pushed by twice the load at which it buckles, 0.68 N (Simo & Vu-Quoc 1986), with 1e-4 N across: the strip's
     stiffnesses are as 2,500 to 1, and an element of 24 mm turns by 0.2 rad about the soft axis. Beside 640 elements.
     """
-    found, _ = tip(frame(elements, -1.36, across=1e-4), tmp_path)
-    assert found == pytest.approx([-15.41, 234.71, -132.45], abs=0.01 * 240.0)
+    deflection, _ = tip(frame(elements, -1.36, across=1e-4), tmp_path)
+    assert deflection == pytest.approx([-15.41, 234.71, -132.45], abs=0.01 * 240.0)
 
 
 def test_the_sign_of_a_mode_hangs_on_no_round_off() -> None:
@@ -158,7 +158,7 @@ def test_the_sign_of_a_mode_hangs_on_no_round_off() -> None:
 
 @pytest.mark.verify
 def test_two_ranks_take_the_same_branch(tmp_path: Path) -> None:
-    found = []
+    deflections = []
     for ranks in (1, 2):
         folder = tmp_path / str(ranks)
         script = (
@@ -170,8 +170,8 @@ def test_two_ranks_take_the_same_branch(tmp_path: Path) -> None:
         )
         done = mpirun(ranks, "-c", script)
         assert done.returncode == 0, done.stderr
-        found.append(Run(folder).summary["stages"][0])
-    assert [stage["branch_switches"] for stage in found] == [1, 1]
-    one, two = (stage["final"]["end"]["position"] for stage in found)
+        deflections.append(Run(folder).summary["stages"][0])
+    assert [stage["branch_switches"] for stage in deflections] == [1, 1]
+    one, two = (stage["final"]["end"]["position"] for stage in deflections)
     assert abs(one[1]) > 0.1, "either side is as good"
     assert two == pytest.approx(one, abs=1e-6)

@@ -74,8 +74,8 @@ def test_capacity_from_two_meshes(tell: Tell, w: float, rough: bool) -> None:
     first, second = extrapolated(coarse, fine, strips)
     capacity = 0.5 * (first + second)
     between = dict.fromkeys(f"{each:.2f}" for each in sorted((first, second)))
-    found = f"{coarse:.2f}, {fine:.2f} | {' to '.join(between)}"
-    tell({f"in place {w:g} {'rough' if rough else 'smooth'}": found})
+    row = f"{coarse:.2f}, {fine:.2f} | {' to '.join(between)}"
+    tell({f"in place {w:g} {'rough' if rough else 'smooth'}": row})
     known = rough_by_slip_lines(w) if rough else smooth_by_slip_lines(w), fitted(w, rough)
     assert (1.0 - WITHIN) * min(known) < capacity < (1.0 + WITHIN) * max(known)
     low, high = BOUNDS.get((w, rough), (0.0, np.inf))

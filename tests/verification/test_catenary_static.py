@@ -17,19 +17,19 @@ def elastica() -> tuple[float, float]:
 
 
 def test_without_bending_stiffness_it_is_a_catenary() -> None:
-    expected, found = guess(properties(140)), hang(140, EI=20.0)
+    expected, shape = guess(properties(140)), hang(140, EI=20.0)
     vertical = expected.tension[[0, -1]] * expected.curve.tangent[[0, -1], [0, 1], 2]
-    assert pytest.approx(expected.H, rel=1e-4) == found.H
-    assert found.sections.end_force[0, 2] == pytest.approx(-vertical[0], rel=1e-4)
-    assert found.sections.end_force[1, 2] == pytest.approx(vertical[1], rel=1e-4)
+    assert pytest.approx(expected.H, rel=1e-4) == shape.H
+    assert shape.sections.end_force[0, 2] == pytest.approx(-vertical[0], rel=1e-4)
+    assert shape.sections.end_force[1, 2] == pytest.approx(vertical[1], rel=1e-4)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_supports_carry_the_weight(dimension: int) -> None:
-    found, weight = hang(35, dimension), float(properties(1).weight[0]) * LENGTH
-    total = found.sections.end_force.sum(axis=0)
+    result, weight = hang(35, dimension), float(properties(1).weight[0]) * LENGTH
+    total = result.sections.end_force.sum(axis=0)
     assert np.abs(total - [0.0, 0.0, weight]).max() < 1e-9 * weight
-    assert np.abs(found.sections.end_moment).max() < 1e-9 * weight
+    assert np.abs(result.sections.end_moment).max() < 1e-9 * weight
 
 
 def test_convergence_to_the_elastica(elastica: tuple[float, float]) -> None:
@@ -53,15 +53,15 @@ def test_accuracy_on_given_meshes(
     tell: Tell, elastica: tuple[float, float], count: int, error: float, moment: float, angle: float
 ) -> None:
     """Relative error of H, largest moment (exact 632.41 N m), start angle (exact 71.303 degrees)."""
-    found = hang(count)
-    off = abs(found.H / elastica[0] - 1.0)
+    result = hang(count)
+    off = abs(result.H / elastica[0] - 1.0)
     assert off < error
-    assert found.largest_moment == pytest.approx(moment, abs=0.06)
-    assert 71.303 < found.start_angle < angle
-    between = float(found.sections.largest_moment[0])
-    moments = " | ".join(f"{each:.1f} N.m" for each in (found.largest_moment, between))
+    assert result.largest_moment == pytest.approx(moment, abs=0.06)
+    assert 71.303 < result.start_angle < angle
+    between = float(result.sections.largest_moment[0])
+    moments = " | ".join(f"{each:.1f} N.m" for each in (result.largest_moment, between))
     tell({f"hanging H {count}": f"{off:.1e}"})
-    tell({f"hanging {count}": f"{moments} | {found.start_angle:.2f}°"})
+    tell({f"hanging {count}": f"{moments} | {result.start_angle:.2f}°"})
 
 
 def test_newton_converges_from_the_catenary() -> None:

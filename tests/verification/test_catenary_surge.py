@@ -16,16 +16,16 @@ def runs(folder: Path, *asked: tuple[int, float]) -> list[Surge]:
 
 
 def test_second_order_in_time(tmp_path: Path) -> None:
-    found = orders(*runs(tmp_path, (140, 0.05), (140, 0.025), (140, 0.0125)))
-    assert found["position"] == pytest.approx(2.0, abs=0.15)
-    assert found["M"] == pytest.approx(2.0, abs=0.3)
-    assert min(found.values()) > 1.7
+    rates = orders(*runs(tmp_path, (140, 0.05), (140, 0.025), (140, 0.0125)))
+    assert rates["position"] == pytest.approx(2.0, abs=0.15)
+    assert rates["M"] == pytest.approx(2.0, abs=0.3)
+    assert min(rates.values()) > 1.7
 
 
 def test_fourth_order_in_element_length(tmp_path: Path) -> None:
-    found = orders(*runs(tmp_path, (70, 0.025), (140, 0.025), (280, 0.025)))
-    assert [found["position"], found["M"]] == pytest.approx([4.0, 4.0], abs=0.3)
-    assert min(found.values()) > 3.0
+    rates = orders(*runs(tmp_path, (70, 0.025), (140, 0.025), (280, 0.025)))
+    assert [rates["position"], rates["M"]] == pytest.approx([4.0, 4.0], abs=0.3)
+    assert min(rates.values()) > 3.0
 
 
 def test_a_graded_mesh_does_as_well_as_one_twice_as_large(tmp_path: Path) -> None:

@@ -49,11 +49,11 @@ def test_a_chain_hangs_as_the_catenary(dimension: int) -> None:
     """To fourth order, as curved elements follow it."""
     off = list[float]()
     for elements in (20, 40):
-        found = stage_histories(hung(elements, dimension))[0]
+        history = stage_histories(hung(elements, dimension))[0]
         H, places = catenary(np.linspace(0.0, L, elements + 1))
-        off.append(float(np.abs(found.position[-1][:, [0, 2]] - places).max()))
-        assert found.end.end_force[0] == pytest.approx(H, rel=1e-5)
-        assert found.end.bending_moment.max() == found.end.curvature.max() == 0.0
+        off.append(float(np.abs(history.position[-1][:, [0, 2]] - places).max()))
+        assert history.end.end_force[0] == pytest.approx(H, rel=1e-5)
+        assert history.end.bending_moment.max() == history.end.curvature.max() == 0.0
     assert off[1] < 1e-4
     assert off[0] / off[1] > 12.0
 

@@ -156,14 +156,14 @@ def test_summary_has_the_largest_of_each_check(dnv: Run) -> None:
 
 
 def test_load_cases_have_the_utilisations(dnv: Run) -> None:
-    found = {value.key: value for value in case_values(dnv.folder, 0.0)}
+    values = {value.key: value for value in case_values(dnv.folder, 0.0)}
     for stage in dnv.summary["stages"]:
         for each in stage["code_check"]:
-            value = found[f"{stage['name']}: {each['variable'].replace('_', ' ')}"]
+            value = values[f"{stage['name']}: {each['variable'].replace('_', ' ')}"]
             assert (value.value, value.unit, value.sign) == (each["utilisation"], "1", "")
-    sample = found["heave: combined loading utilisation"].sample
+    sample = values["heave: combined loading utilisation"].sample
     assert sample is not None
-    assert (sample.value, sample.least) == (found["heave: combined loading utilisation"].value, False)
+    assert (sample.value, sample.least) == (values["heave: combined loading utilisation"].value, False)
 
 
 def test_largest_utilisation_is_not_made_of_largest_moment_and_tension(dnv: Run) -> None:
@@ -221,33 +221,33 @@ def test_functional_effects_of_a_run_without_current(still: Run, tmp_path: Path)
 def test_a_current_that_counts_as_functional_is_a_warning() -> None:
     scene = hanging(DNV)
     scene["water"] = IN_CURRENT
-    found = warnings_of(scene)
-    line_with(found, "code_check.0", "a current acts in all stages", "factor of 1.1", "functional_run")
+    warnings = warnings_of(scene)
+    line_with(warnings, "code_check.0", "a current acts in all stages", "factor of 1.1", "functional_run")
 
 
 def test_an_offset_that_counts_as_functional_is_a_warning() -> None:
     scene = hanging(DNV)
     assert not [each for each in warnings_of(scene) if "functional_run" in each]
     moved = at_offset(scene_from_mapping(scene | {"vessel": {"offset": [4.0, 0.0]}}))
-    found = [*physical_warnings(build(moved, MPI.COMM_SELF))]
-    line_with(found, "code_check.0", "first stage, hang, moves an end", "offset", "factor of 1.1", "functional_run")
+    warnings = [*physical_warnings(build(moved, MPI.COMM_SELF))]
+    line_with(warnings, "code_check.0", "first stage, hang, moves an end", "offset", "factor of 1.1", "functional_run")
 
 
 @pytest.mark.parametrize(
-    ("change", "reported"),
+    ("change", "message"),
     [
         ({"segments": [{"line_type": "pipe", "length": 150.0, "elements": 29}]}, "other nodes"),
         ({}, ""),
     ],
 )
-def test_a_functional_run_has_the_same_nodes(change: Mapping, reported: str, still: Run, tmp_path: Path) -> None:
+def test_a_functional_run_has_the_same_nodes(change: Mapping, message: str, still: Run, tmp_path: Path) -> None:
     scene = hanging(DNV | {"functional_run": str(still.folder)})
     scene["riser"] |= change
     scene["stages"] = scene["stages"][:1]
-    if not reported:
+    if not message:
         assert finished(scene, tmp_path / "run").summary["finished"]
         return
-    with pytest.raises(SceneError, match=rf"code_check\.0\.functional_run.*{reported}"):
+    with pytest.raises(SceneError, match=rf"code_check\.0\.functional_run.*{message}"):
         finished(scene, tmp_path / "run")
     assert not (tmp_path / "run" / "results.nc").exists()
 
@@ -317,10 +317,10 @@ def von_mises_of_wall(done: Run, inside: np.ndarray, area: float, I: float) -> n
     bent = np.hypot(done["bending_moment_y"], done["bending_moment_z"]) * 0.5 * (D - t) / I
     hoop = (inside - outside) * D / (2.0 * T1) - inside
     radial = -(outside * D + inside * BORE) / (D + BORE)
-    found = []
+    stresses = []
     for axial in (tension / area + bent, tension / area - bent):
-        found.append(np.sqrt(0.5 * ((axial - hoop) ** 2 + (hoop - radial) ** 2 + (radial - axial) ** 2)))
-    return np.max(found, axis=0)
+        stresses.append(np.sqrt(0.5 * ((axial - hoop) ** 2 + (hoop - radial) ** 2 + (radial - axial) ** 2)))
+    return np.max(stresses, axis=0)
 
 
 COATED = 0.15  # m, of the coat, which bears the water on itself
@@ -338,10 +338,10 @@ def test_von_mises_stress_by_api_rp_2rd(tmp_path: Path, capsys: pytest.CaptureFi
     assert done["code_utilisation"] == pytest.approx(expected, rel=1e-9)
     assert (under[1] > under[0]).any()
     assert (under[1] < under[0]).any()
-    (found,) = done.summary["stages"][-1]["code_check"]
-    facts = [found[key] for key in ("code", "check", "limit_state", "safety_class")]
+    (check,) = done.summary["stages"][-1]["code_check"]
+    facts = [check[key] for key in ("code", "check", "limit_state", "safety_class")]
     assert facts == ["API RP 2RD", "von Mises stress", "extreme", ""]
-    assert "table 2" in found["clause"]
+    assert "table 2" in check["clause"]
     assert "code: combined loading" in capsys.readouterr().out
 
 
@@ -379,9 +379,9 @@ def test_each_line_type_by_its_own_code(tmp_path: Path, capsys: pytest.CaptureFi
     T, kappa = done["effective_tension"][:, 16:], done["curvature"][:, 16:]
     straight = np.maximum(T, 0.0) / 2.0e4 + kappa / 0.01
     assert done["capacity_curve_utilisation"][:, 16:] == pytest.approx(straight, rel=1e-6)
-    (reported,) = [each for each in done.summary["stages"][0]["warnings"] if "capacity curve" in each]
-    found = done.summary["stages"][0]["code_check"][-1]
-    line_with([reported], "pipe", f"{found['utilisation']:.4g} times", f"arc {found['arc']:.5g} m")
+    (warning,) = [each for each in done.summary["stages"][0]["warnings"] if "capacity curve" in each]
+    check = done.summary["stages"][0]["code_check"][-1]
+    line_with([warning], "pipe", f"{check['utilisation']:.4g} times", f"arc {check['arc']:.5g} m")
     assert "code: capacity curve" in capsys.readouterr().out
 
 
@@ -414,7 +414,7 @@ SLIM = STEEL | {"inner_diameter": 0.11, "mass": 6.0, "EA": 1.5e8, "EI": 2.3e5}
 
 
 @pytest.mark.parametrize(
-    ("change", "pipe", "reported"),
+    ("change", "pipe", "message"),
     [
         ({"corrosion_allowance": 0.016}, STEEL, r"code_check\.0\.corrosion_allowance.*0\.0171 m thick"),
         ({"corrosion_allowance": 0.0, "fabrication_tolerance": 0.0}, SLIM, "D/t = 45.*53.16"),
@@ -428,8 +428,8 @@ SLIM = STEEL | {"inner_diameter": 0.11, "mass": 6.0, "EA": 1.5e8, "EI": 2.3e5}
         ({"kind": "dnv"}, STEEL, "code_check.0.kind.*dnv-st-f201, api-std-2rd"),
     ],
 )
-def test_what_a_code_says_nothing_of_is_refused(change: Mapping, pipe: Mapping, reported: str) -> None:
-    with pytest.raises(SceneError, match=reported) as refused:
+def test_what_a_code_says_nothing_of_is_refused(change: Mapping, pipe: Mapping, message: str) -> None:
+    with pytest.raises(SceneError, match=message) as refused:
         scene_from_mapping(hanging(DNV | change, pipe=pipe))
     assert len(str(refused.value).splitlines()) == 1
 
@@ -441,23 +441,23 @@ def test_accident_before_what_is_functional_is_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "reported"),
+    ("change", "message"),
     [
         ({"yield_stress": 448.0, "tensile_strength": 531.0}, "yield_stress: 448 Pa.*MPa"),
         ({"corrosion_allowance": 3.0, "fabrication_tolerance": 1.5}, "corrosion_allowance: 3 m.*mm"),
         ({"design_pressure": 345.0}, "design_pressure: 345 Pa.*bar"),
     ],
 )
-def test_other_units_are_named(change: Mapping, reported: str) -> None:
+def test_other_units_are_named(change: Mapping, message: str) -> None:
     (check,) = hanging(DNV | {"yield_derating": 0.0} | change)["code_check"]
-    found = [f"{dotted(path)}: {text}" for path, text in doubts({"code_check": [check]})]
-    assert any(re.search(reported, each) for each in found)
+    texts = [f"{dotted(path)}: {text}" for path, text in doubts({"code_check": [check]})]
+    assert any(re.search(message, each) for each in texts)
     assert not doubts({"code_check": [DNV]})
 
 
 def warnings_of(scene: Mapping) -> list[str]:
-    found = physical_warnings(build(scene_from_mapping(scene), MPI.COMM_SELF))
-    return [each for each in found if each.startswith("code_check")]
+    warnings = physical_warnings(build(scene_from_mapping(scene), MPI.COMM_SELF))
+    return [each for each in warnings if each.startswith("code_check")]
 
 
 def test_what_is_doubtful_is_a_warning() -> None:
@@ -475,9 +475,9 @@ def test_what_is_doubtful_is_a_warning() -> None:
 
 
 def test_two_yield_stresses_of_one_pipe_are_a_warning() -> None:
-    found = warnings_of(hanging(DNV, pipe=STEEL | {"wall": {"yield_stress": 4.15e8}}))
-    line_with(found, "code_check.0", "4.48e+08 Pa", "line_types.pipe.wall", "4.15e+08 Pa")
-    assert len(warnings_of(hanging(DNV, pipe=STEEL | {"wall": {"yield_stress": SMYS}}))) == len(found) - 1
+    warnings = warnings_of(hanging(DNV, pipe=STEEL | {"wall": {"yield_stress": 4.15e8}}))
+    line_with(warnings, "code_check.0", "4.48e+08 Pa", "line_types.pipe.wall", "4.15e+08 Pa")
+    assert len(warnings_of(hanging(DNV, pipe=STEEL | {"wall": {"yield_stress": SMYS}}))) == len(warnings) - 1
 
 
 def test_line_types_without_a_bore_may_stand_beside_checked_ones() -> None:
@@ -513,7 +513,7 @@ def test_pressure_outside_is_needed() -> None:
 
 
 @pytest.mark.parametrize(
-    ("check", "reported"),
+    ("check", "message"),
     [
         ({"kind": "flexible-pipe"}, "checks nothing without a limit"),
         ({"kind": "flexible-pipe", "storage_radius": 3.0, "dynamic_radius": 2.0}, "dynamic_radius.*below storage"),
@@ -526,6 +526,6 @@ def test_pressure_outside_is_needed() -> None:
         (API | {"case": "storm"}, "case.*operating, extreme, survival"),
     ],
 )
-def test_incomplete_checks_are_refused(check: Any, reported: str) -> None:
-    with pytest.raises(SceneError, match=reported):
+def test_incomplete_checks_are_refused(check: Any, message: str) -> None:
+    with pytest.raises(SceneError, match=message):
         scene_from_mapping(hanging(check))

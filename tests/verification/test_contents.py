@@ -22,8 +22,8 @@ LENGTH = 40.0
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
 
 
-def tension(reported: StageHistory) -> Array:
-    return np.asarray(reported.end.effective_tension)
+def tension(history: StageHistory) -> Array:
+    return np.asarray(history.end.effective_tension)
 
 
 def upright(contents: Mapping, *stages: Mapping, **more: Any) -> Mapping:
@@ -42,11 +42,11 @@ def below(arc: Array, first: float, last: float) -> Array:
 def test_standing_plugs_hang_from_what_is_above_them(dimension: int) -> None:
     """Weight below each node: that of pipe and oil, and of two plugs whose ends lie within elements."""
     plugs = [{"density": WATER, "length": 7.3, "front": 11.1}, {"density": 900.0, "length": 9.0, "front": 38.0}]
-    (found,) = stage_histories(upright({"slugs": plugs}, static(), dimension=dimension))
+    (history,) = stage_histories(upright({"slugs": plugs}, static(), dimension=dimension))
     arc = np.linspace(0.0, LENGTH, 17)
     of_plugs = (WATER - OIL) * below(arc, 3.8, 11.1) + (900.0 - OIL) * below(arc, 29.0, 38.0)
     expected = G * ((EMPTY + OIL * AREA) * (LENGTH - arc) + of_plugs * AREA)
-    np.testing.assert_allclose(tension(found), expected, rtol=1e-9, atol=1e-6)
+    np.testing.assert_allclose(tension(history), expected, rtol=1e-9, atol=1e-6)
 
 
 def test_a_plug_that_heaves_adds_its_mass() -> None:
@@ -69,12 +69,12 @@ def test_the_top_bears_a_slug_as_long_as_it_is_in_the_pipe(speed: float) -> None
     slug, m = {"density": WATER, "length": 12.0}, (WATER - OIL) * AREA
     for duration in (1.5, 6.0, 11.5):
         scene = upright({"speed": speed, "slugs": [slug]}, static(), dynamic(duration, 0.05), elements=9)
-        _, found = stage_histories(scene)
+        _, history = stage_histories(scene)
         moved = abs(speed) * duration
         within = min(moved, LENGTH) - max(moved - 12.0, 0.0)
         expected = G * ((EMPTY + OIL * AREA) * LENGTH + m * within)
-        assert tension(found)[0] == pytest.approx(expected, rel=2e-3)
-        assert tension(found)[0] - G * (EMPTY + OIL * AREA) * LENGTH == pytest.approx(G * m * within, rel=0.05)
+        assert tension(history)[0] == pytest.approx(expected, rel=2e-3)
+        assert tension(history)[0] - G * (EMPTY + OIL * AREA) * LENGTH == pytest.approx(G * m * within, rel=0.05)
 
 
 def hanging(contents: Mapping, *stages: Mapping, **more: Any) -> Mapping:
@@ -98,15 +98,15 @@ def test_a_hanging_pipe_keeps_its_shape_and_is_pulled_by_m_u_squared(dimension: 
 def test_energy_balances_while_slugs_run_through() -> None:
     """By average acceleration nothing is lost to the scheme: what is left over is of second order in the step."""
     slugs = [{"density": WATER, "length": 15.0, "spacing": 40.0}]
-    left = []
+    errors = []
     for dt in (0.1, 0.05):
         stage = dynamic(8.0, dt, scheme=AVERAGE)
         scene = hanging({"speed": 10.0, "slugs": slugs}, static(), stage, pipe=PIPE, elements=30)
-        _, found = stage_histories(scene)
-        left.append(abs(found.energy[-1] - found.energy[0] - sum(found.work[1:])))
-        assert abs(sum(found.work[1:])) > 7e3
-    assert left[1] < 0.3 * left[0]
-    assert left[1] < 1e-3 * 7e3
+        _, history = stage_histories(scene)
+        errors.append(abs(history.energy[-1] - history.energy[0] - sum(history.work[1:])))
+        assert abs(sum(history.work[1:])) > 7e3
+    assert errors[1] < 0.3 * errors[0]
+    assert errors[1] < 1e-3 * 7e3
 
 
 # A short slug on a straight beam
@@ -137,8 +137,8 @@ def test_a_short_slug_on_a_beam_is_a_moving_load() -> None:
         riser={"contents": contents, "initial": "straight"},
         dimension=2,
     )
-    _, found = stage_histories(scene)
-    t, z = np.array(found.t), np.array(found.position)[:, 10, 2]
+    _, history = stage_histories(scene)
+    t, z = np.array(history.t), np.array(history.position)[:, 10, 2]
     expected = np.zeros_like(t)
     for j in range(1, 12, 2):
         w, drive = (j * math.pi / SPAN) ** 2 * math.sqrt(EI / m), j * math.pi * SPEED / SPAN

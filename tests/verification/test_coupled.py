@@ -156,7 +156,7 @@ def pressed(kind: str) -> list[list[Drop]]:
     """All iterations that end above round-off, step by step."""
     scene = touchdown(LAY, PRESS, kind=kind, su=1000.0, tolerance=1e-13)
     scene["solver"]["load_steps"] = 8
-    assembly, found, touching = built(scene), list[list[Drop]](), list[tuple[frozenset[int], frozenset[int]]]()
+    assembly, drops, touching = built(scene), list[list[Drop]](), list[tuple[frozenset[int], frozenset[int]]]()
     contact = soil_under(assembly).contact
     assert isinstance(contact, SurfaceContact)
     soil = soil_under(assembly).whole
@@ -171,7 +171,7 @@ def pressed(kind: str) -> list[list[Drop]]:
     def watch(system: System, step: AcceptedStep) -> None:
         norms = step.solution.norms
         same = [a == b for a, b in pairwise(touching[-len(norms) :])]
-        found.append([Drop(b / a**2, s) for (a, b), s in zip(pairwise(norms), same, strict=True) if b > ROUND_OFF])
+        drops.append([Drop(b / a**2, s) for (a, b), s in zip(pairwise(norms), same, strict=True) if b > ROUND_OFF])
         touching.clear()
 
     before = take(assembly, assembly.scene.stages[0])
@@ -180,13 +180,13 @@ def pressed(kind: str) -> list[list[Drop]]:
         patch.setattr(contact, "tangent", tangent)
         take(assembly, assembly.scene.stages[1], before, watch)
     assert soil.output_fields().plastic_strain.max() > yielded + 1e-3
-    return found
+    return drops
 
 
 def yielding(soil: Soil, state: State) -> frozenset[int]:
     """Points of the soil whose plastic strain grows in the step to a trial state."""
     plastic = soil.law.columns.index(PLASTIC_STRAIN)
-    grown = soil._answer(state).found.history[:, plastic] > soil._found.history[:, plastic]
+    grown = soil._answer(state).update.history[:, plastic] > soil._law_state.history[:, plastic]
     return frozenset(as_list(np.flatnonzero(grown)))
 
 

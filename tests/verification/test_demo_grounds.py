@@ -39,5 +39,5 @@ def test_what_the_riser_feels_is_alike_on_all_grounds() -> None:
 @pytest.mark.parametrize("ground", CHEAP)
 def test_page_shows_what_a_run_gives(ground: str, tmp_path: Path) -> None:
     run: Run = compute(SCENE, tmp_path, *GROUNDS[ground])
-    found = numbers(row(ground, run, 1.0)[1:-1])
-    assert found == pytest.approx(numbers(ROWS[ground])[:-1], rel=0.01, abs=0.06)
+    values = numbers(row(ground, run, 1.0)[1:-1])
+    assert values == pytest.approx(numbers(ROWS[ground])[:-1], rel=0.01, abs=0.06)

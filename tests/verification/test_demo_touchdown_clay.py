@@ -29,21 +29,21 @@ def demo(tmp_path_factory: pytest.TempPathFactory) -> WatchedRun:
 @pytest.mark.parametrize(("name", "computed"), [("figures", figures), ("stiffness", stiffness)])
 def test_page_shows_figures_as_computed(demo: WatchedRun, name: str, computed: object) -> None:
     assert callable(computed)
-    shown, found = (re.split(r"(-?\d+\.?\d*)", text) for text in (block(TEXT, name), computed(Run(demo.folder))))
-    assert shown[::2] == found[::2]
-    assert [*map(float, shown[1::2])] == pytest.approx([*map(float, found[1::2])], rel=0.01, abs=0.011)
+    shown, values = (re.split(r"(-?\d+\.?\d*)", text) for text in (block(TEXT, name), computed(Run(demo.folder))))
+    assert shown[::2] == values[::2]
+    assert [*map(float, shown[1::2])] == pytest.approx([*map(float, values[1::2])], rel=0.01, abs=0.011)
 
 
 @pytest.mark.verify
 def test_pages_tell_what_a_run_gives(demo: WatchedRun, tmp_path: Path) -> None:
     """README.md, the tutorial and the demo's page; `make figures` writes them anew."""
-    found = told_of(Run(demo.folder), compute(SCENE, tmp_path, COARSER, AT_REST))
-    told = {page: places(page.read_text(encoding="utf-8")) for page in all_pages()}
-    assert {name for names in told.values() for name in names if name.startswith("demo ")} == found.keys()
+    texts = told_of(Run(demo.folder), compute(SCENE, tmp_path, COARSER, AT_REST))
+    stated = {page: places(page.read_text(encoding="utf-8")) for page in all_pages()}
+    assert {name for names in stated.values() for name in names if name.startswith("demo ")} == texts.keys()
     assert COARSER in text(ROOT / "docs/tutorial_clay.md"), "the page has the command of the coarser run"
-    for page, names in told.items():
-        for name in names.keys() & found.keys():
-            assert all(same_figures(each, found[name]) for each in names[name]), (page, name, found[name])
+    for page, names in stated.items():
+        for name in names.keys() & texts.keys():
+            assert all(same_figures(each, texts[name]) for each in names[name]), (page, name, texts[name])
 
 
 @pytest.mark.verify

@@ -72,8 +72,8 @@ def frequency(series: Array, dt: float) -> float:
 def test_free_vibration_has_the_frequencies_of_the_tensioned_beam(dimension: int) -> None:
     shapes = np.sin(np.outer(np.arange(1, 4), np.linspace(0.0, np.pi, ELEMENTS + 1)))
     aside = np.array(stage_histories(plucked_string(dimension))[-1].position)[:, :, 2]
-    found = [frequency(aside @ shape, DT) for shape in shapes]
-    assert found == pytest.approx([closed_form(n) for n in (1, 2, 3)], rel=1e-4)
+    frequencies = [frequency(aside @ shape, DT) for shape in shapes]
+    assert frequencies == pytest.approx([closed_form(n) for n in (1, 2, 3)], rel=1e-4)
 
 
 # Order in time

@@ -49,8 +49,8 @@ def led_around(way: int, side: int, time_step: float, elements: int = 60, dimens
     rows, before = list[tuple[float, float, float]](), State.at_rest(0.0, assembly.size)
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
-        found = riser_record(assembly.riser, stepper)
-        rows.append((found.effective_tension[0], found.effective_tension[-1], found.bending_moment.max()))
+        record = riser_record(assembly.riser, stepper)
+        rows.append((record.effective_tension[0], record.effective_tension[-1], record.bending_moment.max()))
 
     for stage in assembly.scene.stages:
         before = run_stage(assembly, stage, before, Watcher(watch), Timer.new())
@@ -74,8 +74,8 @@ def test_both_ways_in_long_steps(way: int, off: float) -> None:
 @pytest.mark.parametrize(("elements", "dimension", "time_step"), [(60, 2, 0.05), (120, 2, 0.05), (60, 3, 0.025)])
 def test_both_ways_converge(way: int, elements: int, dimension: int, time_step: float) -> None:
     """In space the crushed bend rebounds with 49.95 kN in steps of 0.05 s; such a run warns, and asks for 0.022 s."""
-    found = led_around(way, 1, time_step, elements, dimension)[:, 0].max()
-    assert found == pytest.approx(LARGEST_AROUND[way], rel=0.002)
+    peak = led_around(way, 1, time_step, elements, dimension)[:, 0].max()
+    assert peak == pytest.approx(LARGEST_AROUND[way], rel=0.002)
 
 
 def catenary_led_around(table: str, elements: int, time_step: float) -> Mapping:
@@ -112,6 +112,6 @@ def test_elements_that_follow_it_find_a_kink(time_step: float, tmp_path: Path) -
     """1,120 elements go on to a bend tighter than the pipe's own radius, 0.13 m, in the same place; a warning tells."""
     scene = catenary_led_around(wide_circle(tmp_path), 1120, time_step)
     run(scene_from_mapping(scene), tmp_path / "run")
-    found = Run(tmp_path / "run").summary["stages"][1]["extremes"]["max_curvature"]
-    assert 1.0 / found["max"] < 0.13
-    assert 280.0 < found["arc_max"] < 300.0
+    curvature = Run(tmp_path / "run").summary["stages"][1]["extremes"]["max_curvature"]
+    assert 1.0 / curvature["max"] < 0.13
+    assert 280.0 < curvature["arc_max"] < 300.0

@@ -77,29 +77,29 @@ def waving(folder: Path, **more: Any) -> Run:
 
 def test_ledger_of_each_step_adds_up(tmp_path: Path) -> None:
     """In waves and current, with structural damping, a load and a moving end: nothing is left out of the sums."""
-    seen = waving(tmp_path / "out")
+    run = waving(tmp_path / "out")
     reported = ("structural_damping",), ("loads", "morison", "buoyancy", "supports")
     for total, names in zip(("dissipated", "work"), reported, strict=True):
-        parts = [seen[f"{total}_{name}"][1:] for name in names]
+        parts = [run[f"{total}_{name}"][1:] for name in names]
         assert all(np.abs(part).max() > 0.1 for part in parts)
-        np.testing.assert_allclose(sum(parts), seen[total][1:], rtol=1e-12)
-    stored = seen["kinetic_energy"] + seen["strain_energy"] + seen["potential_energy"]
-    spent = seen["dissipated"] + seen["dissipated_time_scheme"] - seen["work"] - np.nancumsum(seen["energy_residual"])
+        np.testing.assert_allclose(sum(parts), run[total][1:], rtol=1e-12)
+    stored = run["kinetic_energy"] + run["strain_energy"] + run["potential_energy"]
+    spent = run["dissipated"] + run["dissipated_time_scheme"] - run["work"] - np.nancumsum(run["energy_residual"])
     np.testing.assert_allclose(np.diff(stored[1:]), -np.diff(spent[1:]), atol=1e-9 * np.abs(stored).max())
 
 
 def test_ledger_in_the_summary_is_that_of_the_last_step(tmp_path: Path) -> None:
-    seen = waving(tmp_path / "out")
-    energy = seen.summary["stages"][1]["energy"]
-    assert energy["kinetic"] == seen["kinetic_energy"][-1]
-    assert energy["numerical"] == seen["dissipated_time_scheme"][-1]
-    assert energy["work_by"]["supports"] == seen["work_supports"][-1]
-    relative = seen["relative_energy_residual"][1:]
+    run = waving(tmp_path / "out")
+    energy = run.summary["stages"][1]["energy"]
+    assert energy["kinetic"] == run["kinetic_energy"][-1]
+    assert energy["numerical"] == run["dissipated_time_scheme"][-1]
+    assert energy["work_by"]["supports"] == run["work_supports"][-1]
+    relative = run["relative_energy_residual"][1:]
     assert energy["relative_residual"] == relative[-1] == energy["residual"] / energy["turned_over"]
     worst = energy["worst_residual"]
-    at = np.flatnonzero(np.isclose(seen["step_time"][1:], worst["time"]))[0]
-    assert np.cumsum(seen["energy_residual"][1:])[at] == pytest.approx(worst["value"], rel=1e-9)
-    assert abs(worst["value"]) == pytest.approx(np.abs(np.cumsum(seen["energy_residual"][1:])).max(), rel=1e-9)
+    at = np.flatnonzero(np.isclose(run["step_time"][1:], worst["time"]))[0]
+    assert np.cumsum(run["energy_residual"][1:])[at] == pytest.approx(worst["value"], rel=1e-9)
+    assert abs(worst["value"]) == pytest.approx(np.abs(np.cumsum(run["energy_residual"][1:])).max(), rel=1e-9)
 
 
 def test_what_cannot_turn_energy_over_is_not_reported(tmp_path: Path) -> None:
@@ -107,10 +107,10 @@ def test_what_cannot_turn_energy_over_is_not_reported(tmp_path: Path) -> None:
     pipe = {"EA": 1e6, "EI": 2e3, "mass": 20.0}
     scene = riser_scene(static(), dynamic(0.1, 0.1), pipe=pipe, length=9.0, elements=3, start=ends[0], end=ends[1])
     run(scene_from_mapping(scene), tmp_path)
-    with pytest.raises(Exception, match="no dissipated_morison; it has") as reported:
+    with pytest.raises(Exception, match="no dissipated_morison; it has") as error:
         Run(tmp_path)["dissipated_morison"]
-    assert "work_supports" in str(reported.value)
-    assert "work_loads" not in str(reported.value)
+    assert "work_supports" in str(error.value)
+    assert "work_loads" not in str(error.value)
 
 
 @pytest.mark.parametrize("duration", [2.0])

@@ -42,9 +42,9 @@ def test_bars_on_soil_hold_what_they_say(scenes: dict[str, Mapping]) -> None:
     assert median(ratios(judged, math.inf)) <= 3.0
 
 
-@pytest.mark.parametrize(("error", "uncertainty", "told"), [(1.0, 0.2, 3.0), (1.0, 0.3, None), (1e-7, 0.0, None)])
-def test_a_ratio_is_told_where_the_reference_tells_the_error(error: float, uncertainty: float, told: Any) -> None:
+@pytest.mark.parametrize(("error", "uncertainty", "ratio"), [(1.0, 0.2, 3.0), (1.0, 0.3, None), (1e-7, 0.0, None)])
+def test_a_ratio_is_told_where_the_reference_tells_the_error(error: float, uncertainty: float, ratio: Any) -> None:
     """However wide the bar is."""
     for bar in (3.0, 300.0):
         each = Judged("scene", ErrorBar(KeyResult("stage", "top tension", "N", 1.0, 1.0), bar, {}), error, uncertainty)
-        assert each.ratio(CERTAIN) == (told and told * bar / 3.0)
+        assert each.ratio(CERTAIN) == (ratio and ratio * bar / 3.0)

@@ -37,7 +37,7 @@ def struck() -> Mapping:
     return scene
 
 
-def reported(done: subprocess.CompletedProcess[str]) -> str:
+def error_line(done: subprocess.CompletedProcess[str]) -> str:
     """The one line that a failed run tells; Open MPI adds its own about the rank that ended the job."""
     mine = [line for line in done.stderr.splitlines() if re.search(r"converge|relaxation|settle|finished run", line)]
     assert len(mine) == 1, done.stderr
@@ -55,7 +55,7 @@ PLACE = re.compile(
 def test_failed_step_is_reported_with_its_place_and_keeps_all_before(ranks: int, tmp_path: Path) -> None:
     done = command(tmp_path, ranks, struck())
     assert done.returncode == FAILED
-    line = reported(done)
+    line = error_line(done)
     assert PLACE.search(line), line
     assert re.search(r"no convergence .*= 0\.5", line)
     assert "smallest step 0.025" in line
@@ -80,7 +80,7 @@ def test_soil_loaded_beyond_its_capacity_is_an_error(ranks: int, tmp_path: Path)
     scene["solver"]["min_load_step"] = 0.06
     done = command(tmp_path, ranks, scene)
     assert done.returncode == FAILED
-    line = reported(done)
+    line = error_line(done)
     bearing = re.search(r"bearing capacity is exceeded: at arc ([\d.]+) m, .* puts (\S+) N/m .* about (\S+) N/m,", line)
     assert bearing, line
     arc, load, capacity = (float(each) for each in bearing.groups())
@@ -141,7 +141,7 @@ def test_finished_run_is_replaced_by_force_alone(ranks: int, tmp_path: Path) -> 
     before = {p.name: p.read_bytes() for p in (tmp_path / "out").iterdir()}
     refused = command(tmp_path, ranks, second)
     assert refused.returncode == REFUSED
-    assert "--force" in reported(refused)
+    assert "--force" in error_line(refused)
     assert {p.name: p.read_bytes() for p in (tmp_path / "out").iterdir()} == before
     assert command(tmp_path, ranks, second, "--force").returncode == 0
     assert "su: 2000" in (tmp_path / "out" / "scene.yaml").read_text(encoding="utf-8")

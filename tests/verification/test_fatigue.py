@@ -89,27 +89,27 @@ def by_hand(stress: Array, seconds: float) -> float:
 def test_every_damage_is_fatpack_s_by_hand(folder: Path) -> None:
     done = assessed(folder, given())
     assert done.exit_code == 0, done.output
-    shaken, found = Run(folder / "shaken"), table(folder)
+    shaken, damage = Run(folder / "shaken"), table(folder)
     rows = shaken["stage"] == 0
     T, M = shaken["effective_tension"][rows], shaken["bending_moment_y"][rows]
     seconds = shaken.time[rows][-1] - shaken.time[rows][0]
-    assert found["damage_per_year"].size == 3 * 8
-    for n, (arc, angle) in enumerate(zip(found["arc_m"], found["angle_deg"], strict=True)):
+    assert damage["damage_per_year"].size == 3 * 8
+    for n, (arc, angle) in enumerate(zip(damage["arc_m"], damage["angle_deg"], strict=True)):
         node = int(np.argmin(np.abs(shaken.arc - arc)))
         stress = T[:, node] / A + M[:, node] * np.sin(np.radians(angle)) * 0.5 * OUTER / I
-        assert found["damage_per_year"][n] == pytest.approx(by_hand(stress, seconds), rel=1e-9)
-    assert found["life_years"] == pytest.approx(1.0 / found["damage_per_year"], rel=1e-9)
+        assert damage["damage_per_year"][n] == pytest.approx(by_hand(stress, seconds), rel=1e-9)
+    assert damage["life_years"] == pytest.approx(1.0 / damage["damage_per_year"], rel=1e-9)
 
 
 def test_the_upper_side_is_as_loads_and_turns_by_hand_have_it(folder: Path) -> None:
     """Ranges 2.0, 0.4 and 0.4 of tension and bending together; inertia changes them by less than a per cent."""
     assessed(folder, given())
-    reported = json.loads((folder / "damage" / "fatigue.json").read_text(encoding="utf-8"))
-    assert reported["largest"]["angle_deg"] == 90.0
+    data = json.loads((folder / "damage" / "fatigue.json").read_text(encoding="utf-8"))
+    assert data["largest"]["angle_deg"] == 90.0
     S = 1e-6 * (PULL / A + BEND * 0.5 * OUTER / I) * np.array([2.0, 0.4, 0.4])
     N = np.where(S > 83.4, 10.0**11.764 / S**3.0, 10.0**15.606 / S**5.0)
-    assert reported["largest"]["damage_per_year"] == pytest.approx(0.4 * YEAR / 8.0 * np.sum(1.0 / N), rel=0.01)
-    assert reported["cases"][0]["damage_per_year"] == reported["largest"]["damage_per_year"]
+    assert data["largest"]["damage_per_year"] == pytest.approx(0.4 * YEAR / 8.0 * np.sum(1.0 / N), rel=0.01)
+    assert data["cases"][0]["damage_per_year"] == data["largest"]["damage_per_year"]
 
 
 def test_factors_surface_and_shares(folder: Path) -> None:
@@ -148,15 +148,15 @@ def test_in_a_bend_stiffener_it_is_the_run_s_own_wall(tmp_path: Path) -> None:
 
 def test_what_is_doubtful_is_reported(folder: Path) -> None:
     done = assessed(folder, given(design_life=25.0, design_fatigue_factor=10.0, skip=0.5, arcs=[0.0, 3.0]))
-    reported = json.loads((folder / "damage" / "fatigue.json").read_text(encoding="utf-8"))
-    used = 250.0 * reported["largest"]["damage_per_year"]
-    assert reported["design"]["utilisation"] == pytest.approx(used, rel=1e-12)
-    assert reported["cases"][0]["seconds"] == pytest.approx(7.5, abs=1e-9)
+    data = json.loads((folder / "damage" / "fatigue.json").read_text(encoding="utf-8"))
+    used = 250.0 * data["largest"]["damage_per_year"]
+    assert data["design"]["utilisation"] == pytest.approx(used, rel=1e-12)
+    assert data["cases"][0]["seconds"] == pytest.approx(7.5, abs=1e-9)
     assert table(folder)["arc_m"].max() == 3.0
-    line_with(reported["warnings"], "cases", "40 % of the year")
-    line_with(reported["warnings"], "times 10", f"{used:.4g}", "more than 1")
-    assert lines_with(reported["warnings"], "uncertain by some")
-    assert all(f"warning: {text}" in done.output for text in reported["warnings"])
+    line_with(data["warnings"], "cases", "40 % of the year")
+    line_with(data["warnings"], "times 10", f"{used:.4g}", "more than 1")
+    assert lines_with(data["warnings"], "uncertain by some")
+    assert all(f"warning: {text}" in done.output for text in data["warnings"])
     short = assessed(folder, given(skip=7.5)).output
     line_with(short, "warning:", "shaken:", "less than twice", "0.5 s", "too short")
 
@@ -169,7 +169,7 @@ def test_the_picture_is_drawn(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("more", "reported"),
+    ("more", "message"),
     [
         ({"curve": {"dnv": "DD", "environment": "air"}}, r"yaml:\d+: curve.dnv: value \"DD\": must be one of B1"),
         ({"curve": {"dnv": "D"}}, "curve.environment: missing: the key is required here"),
@@ -189,30 +189,30 @@ def test_the_picture_is_drawn(folder: Path) -> None:
         ({"point": 8}, r"point: value 8: no such key here.*did you mean \"points\""),
     ],
 )
-def test_what_is_refused(folder: Path, more: Mapping, reported: str) -> None:
+def test_what_is_refused(folder: Path, more: Mapping, message: str) -> None:
     shutil.rmtree(folder / "damage", ignore_errors=True)
     done = assessed(folder, given(**more))
     assert done.exit_code == 2
     assert "Traceback" not in done.output
     (line,) = done.output.splitlines()
-    assert re.search(reported, line), line
+    assert re.search(message, line), line
     assert not (folder / "damage").exists()
 
 
 @pytest.mark.parametrize(
-    ("scene", "reported"),
+    ("scene", "message"),
     [
         (shaken(wall=False), "no line type has a wall, from whose stress fatigue follows"),
         (shaken(fields=("effective_tension",)), "results.nc has no bending_moment_y, which the stress follows from"),
         (shaken(elements=3), "has other nodes or walls than"),
     ],
 )
-def test_runs_that_do_not_fit(folder: Path, scene: Mapping, reported: str) -> None:
+def test_runs_that_do_not_fit(folder: Path, scene: Mapping, message: str) -> None:
     scene["stages"][0]["duration"] = 0.5
     run(scene_from_mapping(scene), folder / "other", True)
     done = assessed(folder, given(cases=[{"run": name, "share": 0.5} for name in ("shaken", "other")]))
     assert done.exit_code == 2
-    assert reported in done.output
+    assert message in done.output
 
 
 def test_a_finished_assessment_is_kept(folder: Path) -> None:

@@ -199,8 +199,8 @@ def spin_up(folder: Path, axis: Array, along: Array, dimension: int) -> tuple[Ar
         solver={"tolerance": 1e-9},
         riser={"initial": {"points": [[0.0, 0.0, 0.0], list(LENGTH * along)]}},
     )
-    reported = stage_histories(scene)[-1]
-    tip, time, across = np.array(reported.position)[:, -1], np.array(reported.t), np.cross(axis, along)
+    history = stage_histories(scene)[-1]
+    tip, time, across = np.array(history.position)[:, -1], np.array(history.t), np.cross(axis, along)
     c, s = np.cos(hub_angle(time)), np.sin(hub_angle(time))
     x, y = tip @ along, tip @ across
     return time, np.stack([c * x + s * y, c * y - s * x, tip @ axis], axis=1)

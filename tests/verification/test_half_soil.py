@@ -18,10 +18,10 @@ MODELS = pytest.mark.parametrize("model", ["block", "sections"])
 SECTIONS_FIRST = pytest.mark.parametrize("model", [pytest.param("block", marks=pytest.mark.verify), "sections"])
 
 
-def apart(found: Mapping[str, Array], wanted: Mapping[str, Array]) -> dict[str, float]:
+def apart(values: Mapping[str, Array], wanted: Mapping[str, Array]) -> dict[str, float]:
     """Largest differences, over the largest values."""
-    assert found.keys() == wanted.keys()
-    return {name: float(np.abs(found[name] - wanted[name]).max() / np.abs(wanted[name]).max()) for name in wanted}
+    assert values.keys() == wanted.keys()
+    return {name: float(np.abs(values[name] - wanted[name]).max() / np.abs(wanted[name]).max()) for name in wanted}
 
 
 @cache
@@ -67,8 +67,8 @@ def test_so_is_half_where_nodes_lie_in_the_plane(model: str) -> None:
 def test_two_ranks_find_the_same(model: str) -> None:
     done = mpirun(2, "-m", "tests.support.half_soil", model)
     assert done.returncode == 0, done.stderr
-    found = Found(**json.loads(done.stdout.splitlines()[-1]))
-    assert found.unknowns == whole(model).unknowns / 2
-    assert found.renewals == whole(model).renewals
-    compared = {name: np.asarray(getattr(found, name)) for name in whole(model).compared}
+    result = Found(**json.loads(done.stdout.splitlines()[-1]))
+    assert result.unknowns == whole(model).unknowns / 2
+    assert result.renewals == whole(model).renewals
+    compared = {name: np.asarray(getattr(result, name)) for name in whole(model).compared}
     assert max(apart(compared, whole(model).compared).values()) < SAME

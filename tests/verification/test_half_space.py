@@ -17,17 +17,17 @@ LOADS = pytest.mark.parametrize(("direction", "unit"), [(DOWN, boussinesq), (ALO
 
 def shares(tell: Tell, kind: str, h: float, direction: Array, unit: Any) -> Array:
     """Of the half space's displacement 1.5 to 2 m from the patch, in blocks of 4 and 8 m to each side."""
-    found = [LoadedBlock(kind, h, half, 0.25 * half, direction).share(unit) for half in (4.0, 8.0)]
-    shown = " | ".join(f"{share:.3f}" for share in (*found, 2.0 * found[1] - found[0]))
+    values = [LoadedBlock(kind, h, half, 0.25 * half, direction).share(unit) for half in (4.0, 8.0)]
+    shown = " | ".join(f"{share:.3f}" for share in (*values, 2.0 * values[1] - values[0]))
     tell({f"half space {kind} {h:g} {'down' if direction is DOWN else 'along'}": shown})
-    return np.array(found)
+    return np.array(values)
 
 
-def in_large_blocks(found: Array) -> None:
+def in_large_blocks(values: Array) -> None:
     """What a block misses goes with 1/size; what is left of it without any is the cells'."""
-    missing = 1.0 - found
+    missing = 1.0 - values
     assert missing[0] / missing[1] == pytest.approx(2.0, rel=0.06)
-    assert 2.0 * found[1] - found[0] == pytest.approx(1.0, abs=0.03)
+    assert 2.0 * values[1] - values[0] == pytest.approx(1.0, abs=0.03)
 
 
 @LOADS

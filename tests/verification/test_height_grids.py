@@ -48,17 +48,17 @@ X, Y = np.array([-20.0, 10.0, 60.0, 130.0]), np.array([-30.0, -5.0, 12.0, 30.0])
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_grid_on_a_slope_is_the_slope(dimension: int, tmp_path: Path) -> None:
     z = np.tan(np.radians(2.0)) * X[:, None] + 0.0 * Y
-    found = lying(tmp_path, grid(tmp_path, X, Y, z), dimension)
+    state = lying(tmp_path, grid(tmp_path, X, Y, z), dimension)
     slope = lying(tmp_path, {"slope_deg": 2.0}, dimension)
     assert np.count_nonzero(slope.contact_force) > 10
-    assert distance(slope.position, found.position) < 1e-7
-    assert found.contact_force == pytest.approx(slope.contact_force, abs=1e-3)
+    assert distance(slope.position, state.position) < 1e-7
+    assert state.contact_force == pytest.approx(slope.contact_force, abs=1e-3)
 
 
 def test_a_section_takes_a_slope_across_as_level(tmp_path: Path) -> None:
     z = 0.0 * X[:, None] + np.tan(np.radians(SLOPE)) * Y
-    found, level = lying(tmp_path, grid(tmp_path, X, Y, z), 2), lying(tmp_path, {"level": 0.0}, 2)
-    assert distance(level.position, found.position) < 1e-7
+    state, level = lying(tmp_path, grid(tmp_path, X, Y, z), 2), lying(tmp_path, {"level": 0.0}, 2)
+    assert distance(level.position, state.position) < 1e-7
 
 
 def test_in_a_valley_along_the_riser_space_is_the_plane(tmp_path: Path) -> None:
@@ -92,11 +92,11 @@ def test_a_beam_on_a_smooth_slope_across_bends_down_it(tmp_path: Path) -> None:
         contact={"method": "line"},
         solver={"tolerance": 1e-10},
     )
-    found = stage_histories(scene_from_mapping(scene, tmp_path))[-1].end
+    state = stage_histories(scene_from_mapping(scene, tmp_path))[-1].end
     middle = elements // 2
     normal, down = np.array([0.0, -np.sin(a), np.cos(a)]), np.array([0.0, -np.cos(a), -np.sin(a)])
-    assert found.contact_force[middle] == pytest.approx(W * np.cos(a), rel=2e-3)
-    assert found.position[middle] @ normal == pytest.approx(-W * np.cos(a) / STIFFNESS, rel=2e-3)
-    assert found.position[middle] @ down == pytest.approx(W * np.sin(a) * L**4 / (384.0 * pipe["EI"]), rel=5e-3)
-    total = found.start_force + found.end_force
+    assert state.contact_force[middle] == pytest.approx(W * np.cos(a), rel=2e-3)
+    assert state.position[middle] @ normal == pytest.approx(-W * np.cos(a) / STIFFNESS, rel=2e-3)
+    assert state.position[middle] @ down == pytest.approx(W * np.sin(a) * L**4 / (384.0 * pipe["EI"]), rel=5e-3)
+    total = state.start_force + state.end_force
     assert total[1] == pytest.approx((W * L - total[2]) * np.tan(a), rel=1e-6)

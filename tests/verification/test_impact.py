@@ -48,19 +48,19 @@ PAIRS = list(product((1e6, 1e7, 1e8), (0.1, 0.02, 0.005)))
 
 def energies(scene: Mapping) -> Energies:
     """Those of a scene's only stage."""
-    assembly, seen = built(scene), Energies()
-    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), seen, Timer.new())
-    return seen
+    assembly, watch = built(scene), Energies()
+    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), watch, Timer.new())
+    return watch
 
 
 @pytest.mark.parametrize("scene", [pinned, flat, tilted])
 @pytest.mark.parametrize(("k", "dt"), PAIRS)
 def test_default_scheme_gains_no_energy_by_impact(scene: Any, k: float, dt: float) -> None:
-    seen = energies(scene(k, dt))
-    assert seen.gain[-1] < -0.5 * FALL, "the pipe has not come to rest on the ground"
-    assert seen.gain.max() < 1e-4 * FALL
-    assert seen.by_contact.min() > -1e-9 * FALL
-    assert seen.appeared.max() < 0.1 * FALL
+    watch = energies(scene(k, dt))
+    assert watch.gain[-1] < -0.5 * FALL, "the pipe has not come to rest on the ground"
+    assert watch.gain.max() < 1e-4 * FALL
+    assert watch.by_contact.min() > -1e-9 * FALL
+    assert watch.appeared.max() < 0.1 * FALL
 
 
 @pytest.mark.parametrize(("k", "dt"), PAIRS)
@@ -68,9 +68,9 @@ def test_average_acceleration_gains_no_energy_by_impact(k: float, dt: float) -> 
     """Without numerical damping of the pipe, at finer steps what it rings with stays; it never exceeds the start."""
     scene = flat(k, dt)
     scene["stages"][0]["scheme"] = AVERAGE
-    seen = energies(scene)
-    assert seen.gain.max() < 1e-4 * FALL
-    assert seen.by_contact.min() > -1e-9 * FALL
+    watch = energies(scene)
+    assert watch.gain.max() < 1e-4 * FALL
+    assert watch.by_contact.min() > -1e-9 * FALL
 
 
 def test_step_that_makes_energy_out_of_nothing_is_cut(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -105,9 +105,9 @@ def test_automatic_steps_find_the_impact() -> None:
     the tolerance asks. Its energy is still kept.
     """
     coarse, fine = stage_histories(automatic(2e-2))[0], stage_histories(automatic(2e-3))[0]
-    for reported in (coarse, fine):
-        assert max(reported.dt[: len(reported.dt) // 4]) > 5.0 * min(reported.dt)
-        assert sum(reported.cuts) < 0.15 * len(reported.dt)
+    for history in (coarse, fine):
+        assert max(history.dt[: len(history.dt) // 4]) > 5.0 * min(history.dt)
+        assert sum(history.cuts) < 0.15 * len(history.dt)
     assert min(coarse.dt) > 2.0 * min(fine.dt)
     assert min(fine.dt) < 2e-3
     assert energies(automatic(2e-2)).gain.max() < 1e-4 * FALL
@@ -119,9 +119,9 @@ def test_a_pipe_that_lies_still_needs_no_cuts() -> None:
         assert sum(stage_histories(flat(k, dt))[0].cuts) == 0
     scene = flat(1e8, 0.1)
     scene["stages"][0] |= {"time_step": "auto"}
-    reported = stage_histories(scene)[0]
-    assert sum(reported.cuts) < 15
-    assert max(reported.dt) > 0.05
+    history = stage_histories(scene)[0]
+    assert sum(history.cuts) < 15
+    assert max(history.dt) > 0.05
 
 
 def test_contact_averaged_with_the_pipe_would_gain_energy() -> None:
@@ -139,8 +139,8 @@ def test_contact_averaged_with_the_pipe_would_gain_energy() -> None:
 )
 def test_page_tells_what_the_methods_do(method: Method) -> None:
     *_, row = pair_table([method])
-    reported = next(line for line in PAGE.read_text().splitlines() if line.startswith(row[: row.index("%") - 8]))
-    np.testing.assert_allclose(figures(reported), figures(row), rtol=0.02, atol=1e-6)
+    shown = next(line for line in PAGE.read_text().splitlines() if line.startswith(row[: row.index("%") - 8]))
+    np.testing.assert_allclose(figures(shown), figures(row), rtol=0.02, atol=1e-6)
 
 
 def figures(row: str) -> list[float]:
@@ -201,14 +201,14 @@ def test_tank_gains_no_energy_at_any_step(k: float) -> None:
 def no_energy_appears_in_the_tank(k: float, dt: float) -> None:
     """Beyond the work of the arm; the hose's own motion is integrated to (dt/period)^2."""
     scene = tank(k, dt, duration=6.0, ramp=2.0)
-    assembly, seen = build(scene, MPI.COMM_SELF), Energies()
+    assembly, watch = build(scene, MPI.COMM_SELF), Energies()
     before = take(assembly, scene.stages[0])
-    run_stage(assembly, scene.stages[1], before, seen, Timer.new())
-    print(f"tank, k {k:.0e} N/m2, dt {dt:g} s: {seen.report()}")
-    turned_over = np.ptp(seen.gain)
-    assert seen.gain.max() < 1e-4 * turned_over
-    assert seen.appeared.max() < 1e-3 * turned_over
-    assert seen.by_contact.min() > -1e-9 * turned_over
+    run_stage(assembly, scene.stages[1], before, watch, Timer.new())
+    print(f"tank, k {k:.0e} N/m2, dt {dt:g} s: {watch.report()}")
+    turned_over = np.ptp(watch.gain)
+    assert watch.gain.max() < 1e-4 * turned_over
+    assert watch.appeared.max() < 1e-3 * turned_over
+    assert watch.by_contact.min() > -1e-9 * turned_over
 
 
 @pytest.mark.verify
@@ -216,13 +216,13 @@ def no_energy_appears_in_the_tank(k: float, dt: float) -> None:
 @pytest.mark.parametrize("k", STIFFNESSES)
 def test_default_scheme_gains_no_energy_at_any_step(scene: Any, k: float) -> None:
     for dt in TIME_STEPS:
-        seen = energies(scene(k, dt))
-        print(f"{scene.__name__}, k {k:.0e} N/m2, dt {dt:g} s: {seen.report()}")
-        landed = int(np.flatnonzero(seen.by_contact)[0])
-        assert seen.gain[landed:].max() < 1e-9 * FALL
-        assert seen.gain.max() < 2e-4 * FALL, "in free swing, of second order in the step"
-        assert seen.by_contact.min() > -1e-9 * FALL
-        assert seen.appeared.max() < 0.1 * FALL
+        watch = energies(scene(k, dt))
+        print(f"{scene.__name__}, k {k:.0e} N/m2, dt {dt:g} s: {watch.report()}")
+        landed = int(np.flatnonzero(watch.by_contact)[0])
+        assert watch.gain[landed:].max() < 1e-9 * FALL
+        assert watch.gain.max() < 2e-4 * FALL, "in free swing, of second order in the step"
+        assert watch.by_contact.min() > -1e-9 * FALL
+        assert watch.appeared.max() < 0.1 * FALL
 
 
 @pytest.mark.verify

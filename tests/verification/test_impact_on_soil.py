@@ -27,13 +27,13 @@ def gains_nothing(k: float, dt: float, law: Mapping, where: tuple[float, float])
     Contact's own account is of either sign in a step, as the surface turns while clay flows; it gives nothing on the
     whole.
     """
-    assembly, seen = built(falling_on_soil(k, dt, law, where)), Energies()
-    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), seen, Timer.new())
-    print(f"k {k:.0e} N/m2, dt {dt:g} s: {seen.report()}")
-    assert seen.gain[-1] < -0.1 * FALL_ON_SOIL, "nothing was struck"
-    assert seen.gain.max() < 1e-9 * FALL_ON_SOIL
-    assert seen.appeared.max() < 5e-3 * FALL_ON_SOIL
-    assert seen.by_contact.sum() > -5e-3 * FALL_ON_SOIL
+    assembly, watch = built(falling_on_soil(k, dt, law, where)), Energies()
+    run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), watch, Timer.new())
+    print(f"k {k:.0e} N/m2, dt {dt:g} s: {watch.report()}")
+    assert watch.gain[-1] < -0.1 * FALL_ON_SOIL, "nothing was struck"
+    assert watch.gain.max() < 1e-9 * FALL_ON_SOIL
+    assert watch.appeared.max() < 5e-3 * FALL_ON_SOIL
+    assert watch.by_contact.sum() > -5e-3 * FALL_ON_SOIL
 
 
 @pytest.mark.parametrize(
@@ -46,18 +46,18 @@ def test_impact_on_soil_gains_no_energy(k: float, dt: float, law: Mapping) -> No
     gains_nothing(k, dt, law, MIDDLE)
 
 
-@pytest.mark.parametrize(("k", "reported"), [(1e4, True), (1e7, False)], ids=["sinks through", "lands"])
-def test_a_pipe_that_sinks_through_the_surface_is_reported(k: float, reported: bool, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("k", "warned"), [(1e4, True), (1e7, False)], ids=["sinks through", "lands"])
+def test_a_pipe_that_sinks_through_the_surface_is_reported(k: float, warned: bool, tmp_path: Path) -> None:
     """Contact as soft as that pushes it out below, with more energy than it took."""
     run(scene_from_mapping(falling_on_soil(k, 0.02, ELASTIC)), tmp_path)
     (stage,) = Run(tmp_path).summary["stages"]
     warnings = [warning for warning in stage["warnings"] if "sank through the soil's surface" in warning]
-    assert len(warnings) == reported
+    assert len(warnings) == warned
     lost = stage["energy"]["dissipated_by"]
     assert lost["contact"] == 0.0
     given = -lost["contact_time_scheme"]
     assert lines_with(warnings, "contact with the soil", f"gave {given:.3g} J") == warnings
-    assert (given > FALL_ON_SOIL) == reported
+    assert (given > FALL_ON_SOIL) == warned
 
 
 @pytest.mark.verify

@@ -42,8 +42,8 @@ def rest(folder: Path, **parts: Any) -> Run:
     return Run(results)
 
 
-def top_tension(found: Run) -> float:
-    return float(found.summary["stages"][0]["final"]["end"]["effective_tension"])
+def top_tension(run: Run) -> float:
+    return float(run.summary["stages"][0]["final"]["end"]["effective_tension"])
 
 
 @pytest.fixture(scope="module")
@@ -59,14 +59,14 @@ def test_by_other_names_and_without_a_depth(usual: float, folder: Path) -> None:
 
 def test_an_anchor_below_the_seabed(usual: float, folder: Path) -> None:
     """The line takes a longer way: by what it gains so MoorDyn has it, too."""
-    found = top_tension(rest(folder, points=[*ANCHORED[:2], ANCHORED[2].replace("-75", "-77.5"), ANCHORED[3]]))
-    assert found == pytest.approx(BELOW_IT, rel=PEERS)
-    assert found - usual == pytest.approx(BELOW_IT - ON_THE_SEABED, rel=0.02)
+    tension = top_tension(rest(folder, points=[*ANCHORED[:2], ANCHORED[2].replace("-75", "-77.5"), ANCHORED[3]]))
+    assert tension == pytest.approx(BELOW_IT, rel=PEERS)
+    assert tension - usual == pytest.approx(BELOW_IT - ON_THE_SEABED, rel=0.02)
 
 
 def test_an_anchor_a_radius_above_the_seabed(usual: float, folder: Path) -> None:
-    found = top_tension(rest(folder, points=[*ANCHORED[:2], ANCHORED[2].replace("-75", "-74.96"), ANCHORED[3]]))
-    assert found == pytest.approx(usual, rel=1e-3)
+    tension = top_tension(rest(folder, points=[*ANCHORED[:2], ANCHORED[2].replace("-75", "-74.96"), ANCHORED[3]]))
+    assert tension == pytest.approx(usual, rel=1e-3)
 
 
 @pytest.mark.parametrize("mass", [0.0, 400.0])

@@ -42,7 +42,7 @@ def tensions(stage: Mapping[str, Any]) -> np.ndarray[Any, np.dtype[np.float64]]:
     return np.array([stage["extremes"][end]["effective_tension"]["max"] for end in ("start", "end")])
 
 
-def reported(stage: Mapping[str, Any]) -> np.ndarray[Any, np.dtype[np.float64]]:
+def estimates(stage: Mapping[str, Any]) -> np.ndarray[Any, np.dtype[np.float64]]:
     """Their errors as estimated."""
     return np.array([stage["indicators"]["time_step"][f"{end}.effective_tension"]["max"] for end in ("start", "end")])
 
@@ -62,7 +62,7 @@ def tension_errors(name: str) -> list[tuple[float, float, float, float, bool]]:
     fine, stages = stepped_stages(name)
     exact, rows = tensions(fine), []
     for dt, stage in stages:
-        error, estimate = abs(tensions(stage) - exact) / exact.max(), reported(stage) / exact.max()
+        error, estimate = abs(tensions(stage) - exact) / exact.max(), estimates(stage) / exact.max()
         worst = int(error.argmax())
         rows.append((dt, error[worst], estimate[worst], estimate.max(), bool(stage["warnings"])))
         print(f"| {name} | {dt:g} | {error[worst]:.2%} | {estimate[worst]:.2%} | {'yes' if rows[-1][-1] else ''} |")
@@ -175,7 +175,7 @@ def test_snap_after_compression_is_reported_by_the_least_tension(name: str, dt: 
     case = COMPRESSED[name]
     stage = last_stage(case.scene(dt))
     assert tensions(stage).max() < 0.95 * case.largest
-    assert reported(stage).max() < LARGE_ERROR * case.largest
+    assert estimates(stage).max() < LARGE_ERROR * case.largest
     assert tells_of_tension(stage)
     assert lines_with(stage["warnings"], "riser is compressed")
 
@@ -195,14 +195,14 @@ def test_heaves_that_miss_the_tension_are_reported(tell: Tell) -> None:
             kind = "wrong" if error > WRONG else "off" if error > 0.02 else "right"
             runs[kind].append((*heave, dt, tells_of_tension(stage)))
     for kind, each in runs.items():
-        print(f"| {kind} | {len(each)} | {sum(reported for *_, reported in each)} |")
-        print([run for *run, reported in each if reported == (kind == "right")])
-    reported = {kind: sum(reported for *_, reported in each) for kind, each in runs.items()}
-    tell({f"indicators heaves {kind}": f"{reported[kind]} of {len(runs[kind])}" for kind in ("wrong", "right")})
+        print(f"| {kind} | {len(each)} | {sum(warned for *_, warned in each)} |")
+        print([run for *run, warned in each if warned == (kind == "right")])
+    warned = {kind: sum(warned for *_, warned in each) for kind, each in runs.items()}
+    tell({f"indicators heaves {kind}": f"{warned[kind]} of {len(runs[kind])}" for kind in ("wrong", "right")})
     assert len(runs["wrong"]) >= 20
-    assert reported["wrong"] >= 0.9 * len(runs["wrong"])
+    assert warned["wrong"] >= 0.9 * len(runs["wrong"])
     assert len(runs["right"]) >= 10
-    assert reported["right"] <= 0.2 * len(runs["right"])
+    assert warned["right"] <= 0.2 * len(runs["right"])
 
 
 @pytest.mark.parametrize(("heave", "largest", "off"), [((2.0, 7.0), 123.6e3, False), ((4.0, 9.0), 143.4e3, True)])
@@ -225,13 +225,13 @@ def test_force_of_an_impact_is_reported_to_be_too_small(tell: Tell, k: float, dt
     """A pipe falls by h = 0.1 m on a lossless floor: at most w + sqrt(w² + 2 k w h) per length."""
     stage, w = last_stage(falling(dt, k)), 700.0
     exact = 40.0 * (w + math.sqrt(w * w + 2.0 * k * w * 0.1))
-    error, found = 1.0 - stage["extremes"]["contact_force"]["max"] / exact, stage["indicators"]["impact"]
-    shares = (100.0 * each for each in (error, found["force_error"], found["share_of_kinetic"]))
+    error, estimate = 1.0 - stage["extremes"]["contact_force"]["max"] / exact, stage["indicators"]["impact"]
+    shares = (100.0 * each for each in (error, estimate["force_error"], estimate["share_of_kinetic"]))
     tell({f"impact {k:.0e} {dt:g}": "{:.1f} % | {:.1f} % | {:.0f} %".format(*shares)})
     lost = stage["energy"]["dissipated_by"]
     assert lost == {"seabed": 0.0, "seabed_time_scheme": stage["energy"]["dissipated"]}
-    assert 0.4 * error < found["force_error"] < 2.0 * error
-    assert found["share_of_kinetic"] > LARGE_LOSS
+    assert 0.4 * error < estimate["force_error"] < 2.0 * error
+    assert estimate["share_of_kinetic"] > LARGE_LOSS
     assert any("impact lost" in text for text in stage["warnings"])
 
 
@@ -259,12 +259,12 @@ def test_elements_too_long_for_the_moment_are_reported(name: str) -> None:
     exact = moment(last_stage(hung(640, length, top, rotation)))
     for elements in (10, 20, 40, 80):
         stage = last_stage(hung(elements, length, top, rotation))
-        error, found = abs(moment(stage) - exact), stage["indicators"]["bending"]
-        print(f"| {name} | {elements} | {error / exact:.2%} | {found['moment_error'] / exact:.2%} |")
+        error, estimate = abs(moment(stage) - exact), stage["indicators"]["bending"]
+        print(f"| {name} | {elements} | {error / exact:.2%} | {estimate['moment_error'] / exact:.2%} |")
         if error > 0.1 * exact:
-            assert found["share"] > SMOOTH_MISFIT, elements
+            assert estimate["share"] > SMOOTH_MISFIT, elements
             assert lines_with(stage["warnings"], "too long", "bending"), elements
-            assert 0.3 * error < found["moment_error"] < 10.0 * error, elements
+            assert 0.3 * error < estimate["moment_error"] < 10.0 * error, elements
 
 
 def moment(stage: Mapping[str, Any]) -> float:

@@ -124,9 +124,9 @@ def joined(n: int) -> Joined:
     beam = Beam(line, e)
     solve(line, [beam])
     state = State.at_rest(1.0, line.size)
-    found = section_forces(line, e, state, element_residual(line, [beam], state))
+    forces = section_forces(line, e, state, element_residual(line, [beam], state))
     tangent = line.trial(state).turn.tangent[n, 0]
-    return Joined(float(found.force[-1, 0]), float(found.moment[n, 1]), float(np.arctan2(tangent[1], tangent[0])))
+    return Joined(float(forces.force[-1, 0]), float(forces.moment[n, 1]), float(np.arctan2(tangent[1], tangent[0])))
 
 
 def reference() -> tuple[float, float, float]:
@@ -157,15 +157,15 @@ def reference() -> tuple[float, float, float]:
         x = guess.curve.position[part]
         th = np.arctan2(np.gradient(x[:, 2]), np.gradient(x[:, 0]))
         y[5 * k : 5 * k + 5] = [x[:, 0], x[:, 2], th, 0.0 * th, guess.H / UNIT * np.tan(th)]
-    found = solve_bvp(slopes, ends, s, y, p=[guess.H / UNIT], tol=1e-8, max_nodes=20_000)
-    assert found.success, found.message
-    return UNIT * float(found.p[0]), UNIT * float(found.y[3, -1]), float(found.y[2, -1])
+    solution = solve_bvp(slopes, ends, s, y, p=[guess.H / UNIT], tol=1e-8, max_nodes=20_000)
+    assert solution.success, solution.message
+    return UNIT * float(solution.p[0]), UNIT * float(solution.y[3, -1]), float(solution.y[2, -1])
 
 
 def test_a_joint_of_unequal_pipes_converges_at_fourth_order() -> None:
     H, M, angle = reference()
-    found = [joined(n) for n in (30, 60, 120)]
-    errors = np.array([[j.H / H - 1.0, -j.joint_moment / M - 1.0, j.joint_angle - angle] for j in found])
+    moments = [joined(n) for n in (30, 60, 120)]
+    errors = np.array([[j.H / H - 1.0, -j.joint_moment / M - 1.0, j.joint_angle - angle] for j in moments])
     assert np.abs(errors[-1]).max() < 1e-5, errors
     orders = np.log2(np.abs(errors[:-1] / errors[1:]))
     assert np.all(orders > 3.7), f"errors {errors}, orders {orders}"

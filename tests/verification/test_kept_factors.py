@@ -42,7 +42,7 @@ class Steps:
 
 
 @cache
-def taken(law: str, linear: str) -> Steps:
+def steps_of(law: str, linear: str) -> Steps:
     assembly, before = built(scene(law, linear)), None
     out, kept = Steps([], [], [], 0, 0), list[KeptFactors]()
 
@@ -69,7 +69,7 @@ def taken(law: str, linear: str) -> Steps:
 @pytest.mark.parametrize("law", [*list(LAWS)[:2], pytest.param("sand", marks=pytest.mark.verify)])
 def test_states_are_those_of_direct_solutions(law: str) -> None:
     """To what Newton's tolerance leaves."""
-    kept, direct = taken(law, "kept"), taken(law, "direct")
+    kept, direct = steps_of(law, "kept"), steps_of(law, "direct")
     for mine, own in zip(kept.forces, direct.forces, strict=True):
         assert np.abs(mine - own).max() <= 20.0 * TOLERANCE * np.linalg.norm(own)
     moved = sum(kept.increments), sum(direct.increments)
@@ -83,7 +83,7 @@ def test_newton_takes_no_more_iterations(law: str) -> None:
     steps end on the other side, 67 iterations to 64. A linear tolerance ten times as loose takes 76 to 64, and two more
     in a step; in perfectly plastic clay 69 to 63.
     """
-    kept, direct = taken(law, "kept"), taken(law, "direct")
+    kept, direct = steps_of(law, "kept"), steps_of(law, "direct")
     more = [mine - own for mine, own in zip(kept.iterations, direct.iterations, strict=True)]
     assert max(more) <= 1
     assert sum(more) <= 0.07 * sum(direct.iterations)
@@ -92,6 +92,6 @@ def test_newton_takes_no_more_iterations(law: str) -> None:
 @pytest.mark.parametrize("law", LAWS)
 def test_factors_outlive_iterations(law: str) -> None:
     """Less often where the tangent is symmetric: in so small a block a factorisation is worth one solve."""
-    kept, most = taken(law, "kept"), 0.75 if law == "perfectly plastic" else 0.6
+    kept, most = steps_of(law, "kept"), 0.75 if law == "perfectly plastic" else 0.6
     assert 0 < kept.factorisations <= most * sum(kept.iterations)
-    assert taken(law, "direct").factorisations == 0
+    assert steps_of(law, "direct").factorisations == 0

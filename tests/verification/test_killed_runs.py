@@ -70,11 +70,11 @@ def look(out: Path) -> int:
         return 0
     refuse(out, force=True)
     try:
-        left = Run(out)
+        run = Run(out)
     except ResultsError:  # its summary was not there yet
         assert not (out / "summary.json").exists()
         return 0
-    return len(left["position"])
+    return len(run["position"])
 
 
 @pytest.mark.verify

@@ -83,15 +83,15 @@ class Laid(Watcher):
 
 def laid(mapping: Mapping) -> Laid:
     assembly = built(mapping)
-    seen, before = Laid(assembly), State.at_rest(0.0, assembly.size)
+    watch, before = Laid(assembly), State.at_rest(0.0, assembly.size)
     for stage in assembly.scene.stages:
-        before = run_stage(assembly, stage, before, seen, Timer.new())
-    return seen
+        before = run_stage(assembly, stage, before, watch, Timer.new())
+    return watch
 
 
-def require_easy(seen: Laid, most: int = MOST) -> None:
-    assert (seen.relaxations, seen.cuts) == (0, 0)
-    assert max(seen.iterations) <= most
+def require_easy(watch: Laid, most: int = MOST) -> None:
+    assert (watch.relaxations, watch.cuts) == (0, 0)
+    assert max(watch.iterations) <= most
 
 
 @pytest.mark.parametrize("apart", [USUAL, *(pytest.param(x, marks=pytest.mark.verify) for x in (STEEP, WIDE))])
@@ -140,7 +140,7 @@ def test_newton_alone_where_it_is_held_otherwise(changed: str) -> None:
 )
 def test_where_relaxation_finds_it(ground: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Tension, touchdown, moment and friction to a millionth."""
-    found, advance = laid(scene(ground)).end[0], TimeStepper.advance
+    state, advance = laid(scene(ground)).end[0], TimeStepper.advance
 
     def fail_once(stepper: TimeStepper, *args: Any) -> AcceptedStep:
         monkeypatch.setattr(TimeStepper, "advance", advance)
@@ -151,7 +151,7 @@ def test_where_relaxation_finds_it(ground: str, monkeypatch: pytest.MonkeyPatch)
     assert relaxed.relaxations == 1
     expected = relaxed.end[0]
     for name in ("effective_tension", "bending_moment", "contact_force", "start_force", "end_force", "position"):
-        value, other = getattr(found, name), getattr(expected, name)
+        value, other = getattr(state, name), getattr(expected, name)
         assert value == pytest.approx(other, abs=1e-6 * float(np.abs(other).max())), name
 
 
@@ -179,8 +179,8 @@ def test_guess_touches_down_where_the_riser_does(apart: float) -> None:
     guess = laid_guess(assembly.scene, assembly.riser.seabed, assembly.riser.elements, (), assembly.riser.catenary)
     assert guess is not None
     placed, arc, axis = assembly.riser.line.x[:, 1], assembly.riser.line.arc, 0.5 * PIPE["outer_diameter"]
-    found = arc[laid(mapping).end[0].contact_force > 0.0][-1]
+    touchdown = arc[laid(mapping).end[0].contact_force > 0.0][-1]
     guessed, of_cable = arc[placed + guess[:, 1] < axis][-1], arc[placed < axis + 1e-3][-1]
-    assert abs(guessed - found) < 2.5
-    assert of_cable - found > 0.5 * np.sqrt(PIPE["EI"] / assembly.riser.catenary.H)
+    assert abs(guessed - touchdown) < 2.5
+    assert of_cable - touchdown > 0.5 * np.sqrt(PIPE["EI"] / assembly.riser.catenary.H)
     assert guess[[0, -1], 0] == pytest.approx([0.0, 0.0], abs=1e-9)

@@ -38,19 +38,19 @@ def rough(w: float) -> float:
     return float(7.1 * w**0.33)
 
 
-def fallen(found: Sunk) -> float:
+def fallen(sunk: Sunk) -> float:
     """Share by which the load is below what it was before, at most."""
-    highest = np.maximum.accumulate(found.V)
-    return float(np.max((highest - found.V) / highest))
+    highest = np.maximum.accumulate(sunk.V)
+    return float(np.max((highest - sunk.V) / highest))
 
 
-def at_depths(found: Sunk) -> str:
+def at_depths(sunk: Sunk) -> str:
     """V/(su D) as cells of a table."""
-    return " | ".join(f"{found.at(w):.2f}" for w in DEPTHS)
+    return " | ".join(f"{sunk.at(w):.2f}" for w in DEPTHS)
 
 
-def require_a_load_that_rises(found: Sunk) -> None:
-    assert fallen(found) < 0.005
+def require_a_load_that_rises(sunk: Sunk) -> None:
+    assert fallen(sunk) < 0.005
 
 
 @pytest.mark.parametrize(
@@ -62,20 +62,20 @@ def require_a_load_that_rises(found: Sunk) -> None:
 )
 def test_a_pipe_sinks_to_a_fifth_of_its_diameter(scene: Mapping, lost: float) -> None:
     """On hexahedra of D/8 the load climbs in stairs as cell after cell touches. lost: share of the soil's volume."""
-    found = sink(scene)
+    sunk = sink(scene)
     for w in (0.1, 0.15, 0.2):
-        assert found.at(w) == pytest.approx(smooth(w), rel=0.07)
-    require_a_load_that_rises(found)
-    assert found.renewals > 0
-    assert found.iterations.mean() < FEW
-    assert found.area == pytest.approx(1.0, abs=lost)
+        assert sunk.at(w) == pytest.approx(smooth(w), rel=0.07)
+    require_a_load_that_rises(sunk)
+    assert sunk.renewals > 0
+    assert sunk.iterations.mean() < FEW
+    assert sunk.area == pytest.approx(1.0, abs=lost)
 
 
 @pytest.mark.parametrize("scene", [sinking(4, 0.1, 8), sinking_into_tetrahedra(4, 0.1, 8)], ids=["hex", "tet"])
 def test_the_line_is_in_balance_with_the_forces_that_are_shown(scene: Mapping) -> None:
     """At the end of a last step in which the surface under the pipe grows by some per cent."""
-    found = sink(scene)
-    assert found.R[-1] == pytest.approx(found.V[-1], rel=1e-6)
+    sunk = sink(scene)
+    assert sunk.R[-1] == pytest.approx(sunk.V[-1], rel=1e-6)
 
 
 def test_loads_lag_behind_no_step() -> None:
@@ -95,9 +95,9 @@ def test_a_pipe_sinks_into_tetrahedra_by_half_of_its_diameter() -> None:
     """On two meshes."""
     loads = []
     for cells in (6, 8):
-        found = sink(sinking_into_tetrahedra(cells, 0.5, 100))
-        loads.append([found.at(w) for w in DEPTHS])
-        require_a_load_that_rises(found)
+        sunk = sink(sinking_into_tetrahedra(cells, 0.5, 100))
+        loads.append([sunk.at(w) for w in DEPTHS])
+        require_a_load_that_rises(sunk)
     np.testing.assert_allclose(loads[0], loads[1], rtol=0.02)
     np.testing.assert_allclose(loads[1], [smooth(w) for w in DEPTHS], rtol=0.05)
 
@@ -105,44 +105,44 @@ def test_a_pipe_sinks_into_tetrahedra_by_half_of_its_diameter() -> None:
 @pytest.mark.verify
 def test_a_rough_pipe_sinks_into_tetrahedra() -> None:
     """Its load falls for a step where a mesh has found no place, by less than 3 %."""
-    found = sink(sinking_into_tetrahedra(8, 0.3, 60, **FULLY_ROUGH))
+    sunk = sink(sinking_into_tetrahedra(8, 0.3, 60, **FULLY_ROUGH))
     for w in (0.1, 0.2, 0.3):
-        assert found.at(w) == pytest.approx(rough(w), rel=0.07)
-    assert fallen(found) < 0.03
+        assert sunk.at(w) == pytest.approx(rough(w), rel=0.07)
+    assert fallen(sunk) < 0.03
 
 
 @pytest.mark.verify
 def test_a_pipe_sinks_to_half_of_its_diameter_on_two_meshes(tell: Tell) -> None:
     loads = []
     for cells in (16, 32):
-        found = sink(sinking(cells, 0.5, 100))
-        tell({f"sinks smooth {cells}": at_depths(found)})
+        sunk = sink(sinking(cells, 0.5, 100))
+        tell({f"sinks smooth {cells}": at_depths(sunk)})
         for w in DEPTHS:
-            assert found.at(w) == pytest.approx(smooth(w), rel=0.04)
-        require_a_load_that_rises(found)
-        assert found.iterations.mean() < FEW
-        loads.append([found.at(w) for w in DEPTHS])
+            assert sunk.at(w) == pytest.approx(smooth(w), rel=0.04)
+        require_a_load_that_rises(sunk)
+        assert sunk.iterations.mean() < FEW
+        loads.append([sunk.at(w) for w in DEPTHS])
     np.testing.assert_allclose(loads[0], loads[1], rtol=0.04)
 
 
 @pytest.mark.verify
 def test_a_rough_pipe_sinks_to_a_fifth_of_its_diameter() -> None:
-    found = sink(sinking(8, 0.2, 40, **FULLY_ROUGH))
+    sunk = sink(sinking(8, 0.2, 40, **FULLY_ROUGH))
     for w in (0.1, 0.15, 0.2):
-        assert found.at(w) == pytest.approx(rough(w), rel=0.1)
-    assert found.renewals > 0
-    require_a_load_that_rises(found)
+        assert sunk.at(w) == pytest.approx(rough(w), rel=0.1)
+    assert sunk.renewals > 0
+    require_a_load_that_rises(sunk)
 
 
 @pytest.mark.verify
 @pytest.mark.parametrize("cells", [16, 32])
 def test_a_rough_pipe_sinks_to_half_of_its_diameter(tell: Tell, cells: int) -> None:
-    found = sink(sinking(cells, 0.5, 100, **FULLY_ROUGH))
-    tell({f"sinks rough {cells}": at_depths(found)})
+    sunk = sink(sinking(cells, 0.5, 100, **FULLY_ROUGH))
+    tell({f"sinks rough {cells}": at_depths(sunk)})
     for w in DEPTHS:
-        assert found.at(w) == pytest.approx(rough(w), rel=0.07)
-    require_a_load_that_rises(found)
-    assert found.iterations.mean() < FEW
+        assert sunk.at(w) == pytest.approx(rough(w), rel=0.07)
+    require_a_load_that_rises(sunk)
+    assert sunk.iterations.mean() < FEW
 
 
 @pytest.mark.verify
@@ -160,9 +160,9 @@ def test_weight_adds_what_it_takes_to_lift_the_soil() -> None:
     1.5 gamma' A over D su of Merifield et al., a round number, A being the segment of the pipe below the seabed.
     """
     heavy = 2.0e4  # N/m3
-    weightless, found = (sink(sinking(16, 0.5, 50, submerged_unit_weight=weight)) for weight in (0.0, heavy))
+    weightless, sunk = (sink(sinking(16, 0.5, 50, submerged_unit_weight=weight)) for weight in (0.0, heavy))
     for w, area in ((0.2, 0.112), (0.3, 0.198), (0.4, 0.293), (0.48, 0.373)):
-        added = found.at(w) - weightless.at(w)
+        added = sunk.at(w) - weightless.at(w)
         before, after = np.interp((w - 0.02, w + 0.02), weightless.w, weightless.lift)
         power = (after - before) / 0.04 * heavy * D / SU
         assert added == pytest.approx(power, rel=0.05)
@@ -171,9 +171,9 @@ def test_weight_adds_what_it_takes_to_lift_the_soil() -> None:
 
 @pytest.mark.verify
 def test_a_pipe_sinks_by_its_diameter() -> None:
-    found = sink(sinking(16, 1.0, 200))
-    require_a_load_that_rises(found)
-    assert found.at(0.7) == pytest.approx(smooth(0.7), rel=0.07)
+    sunk = sink(sinking(16, 1.0, 200))
+    require_a_load_that_rises(sunk)
+    assert sunk.at(0.7) == pytest.approx(smooth(0.7), rel=0.07)
 
 
 def cycles(scene: Mapping, path: Array, folder: Path) -> Array:
@@ -183,8 +183,8 @@ def cycles(scene: Mapping, path: Array, folder: Path) -> Array:
     table.write_text("\n".join(["t [-], x [m], y [m], z [m]", *rows]) + "\n", encoding="utf-8")
     motion = {end: {"table": str(table)} for end in ("start", "end")}
     stage = {"name": "cycles", "kind": "quasi-static", "duration": len(path) - 1, "time_step": 1, "motion": motion}
-    found = sink(scene | {"stages": [*scene["stages"], stage]}, len(scene["stages"]))
-    return np.interp(np.arange(1.0, len(path)), found.t, found.V)
+    sunk = sink(scene | {"stages": [*scene["stages"], stage]}, len(scene["stages"]))
+    return np.interp(np.arange(1.0, len(path)), sunk.t, sunk.V)
 
 
 @pytest.mark.verify
@@ -205,11 +205,11 @@ def test_secant_stiffness_is_near_randolph_and_quiggins(tmp_path: Path) -> None:
     least ones hang on the clay's stiffness, which K_max stands for.
     """
     path, uplifts = np.array([0.3, 0.299, 0.3, 0.29, 0.3, 0.2, 0.3]), np.array([0.001, 0.01, 0.1])
-    found = []
+    ratios = []
     for stiff in (400.0, 1000.0):
         V = cycles(sinking(8, 0.3, 60, CLAY | {"kind": "iwan", "E_over_su": stiff}), path, tmp_path)
-        found.append((V[1::2] - V[::2]) / V[1::2] / uplifts)
-    soft, firm = found
+        ratios.append((V[1::2] - V[::2]) / V[1::2] / uplifts)
+    soft, firm = ratios
     published = 200.0 / (1.0 + 200.0 * uplifts)
     np.testing.assert_allclose(soft[1:], published[1:], rtol=0.06)
     assert soft[0] < published[0] < firm[0]
@@ -220,10 +220,10 @@ def test_a_pipe_pulled_out_leaves_the_soil() -> None:
     """Suction holds it back by less than its cap of 2 su D, then lets go."""
     scene = sinking(8, 0.3, 60, contact={"suction": {"cap": 2.0 * SU * D, "reach": 0.05}})
     up = {end: [*place[:2], 1.2 * D] for end, place in scene["stages"][0]["move"].items()}
-    found = sink(scene | {"stages": [*scene["stages"], {"name": "pull", "kind": "static", "move": up}]}, 1)
-    assert -2.0 < found.V.min() < -1.0
-    assert not found.V[-5:].any()
-    assert found.iterations.max() <= 12
+    sunk = sink(scene | {"stages": [*scene["stages"], {"name": "pull", "kind": "static", "move": up}]}, 1)
+    assert -2.0 < sunk.V.min() < -1.0
+    assert not sunk.V[-5:].any()
+    assert sunk.iterations.max() <= 12
 
 
 @pytest.mark.verify
@@ -247,15 +247,15 @@ def test_ranks_agree_across_new_meshes(scene: str) -> None:
         "if MPI.COMM_WORLD.rank == 0:\n"
         "    print(made.soil.mesh_renewal.count, *force)\n"
     )
-    found = []
+    runs = []
     for ranks in (1, 2, 4):
         done = mpirun(ranks, "-c", script)
         assert done.returncode == 0, done.stderr
-        found.append([float(x) for x in done.stdout.split()[-4:]])
-    assert found[0][0] > 0
-    for others in found[1:]:
-        assert others[0] == found[0][0]
-        assert others[3] == pytest.approx(found[0][3], rel=1e-6)
+        runs.append([float(x) for x in done.stdout.split()[-4:]])
+    assert runs[0][0] > 0
+    for others in runs[1:]:
+        assert others[0] == runs[0][0]
+        assert others[3] == pytest.approx(runs[0][3], rel=1e-6)
 
 
 def swept(cells: int, way: float, steps: int) -> Sunk:
@@ -268,32 +268,32 @@ def swept(cells: int, way: float, steps: int) -> Sunk:
     return sink(scene | {"dimension": 3, "solver": {"load_steps": steps}, "stages": [*scene["stages"], sweep]}, 1)
 
 
-def require_breakout(found: Sunk, way: float) -> None:
+def require_breakout(sunk: Sunk, way: float) -> None:
     """Beside 1.7 (z/D)^0.61 + 0.23 (V/su D)^0.83 (D. Bruton, D. White, C. Cheuk, M. Bolton & M. Carr, Pipe-soil
     interaction behavior during lateral buckling, SPE Projects 1 (2006), from memory), a fit to tests that scatter by a
     third, in which the clay remoulds.
     """
-    breakout = np.interp(0.1, way * found.t, found.H)
-    beneath = np.interp(0.1, way * found.t, found.V)
+    breakout = np.interp(0.1, way * sunk.t, sunk.H)
+    beneath = np.interp(0.1, way * sunk.t, sunk.V)
     assert breakout == pytest.approx(1.7 * 0.3**0.61 + 0.23 * beneath**0.83, rel=0.33)
-    assert found.iterations.mean() < 10.0
-    assert found.area == pytest.approx(1.0, abs=2e-3)
+    assert sunk.iterations.mean() < 10.0
+    assert sunk.area == pytest.approx(1.0, abs=2e-3)
 
 
 @pytest.mark.verify
 def test_a_pipe_swept_to_the_side_breaks_out_alike_on_two_meshes() -> None:
     coarse, fine = (swept(cells, 0.3, 20) for cells in (8, 16))
-    for found in (coarse, fine):
-        require_breakout(found, 0.3)
+    for sunk in (coarse, fine):
+        require_breakout(sunk, 0.3)
     assert coarse.H[-1] == pytest.approx(fine.H[-1], rel=0.05)
 
 
 @pytest.mark.verify
 def test_a_pipe_swept_by_its_diameter_pushes_its_berm_along() -> None:
     """H rises little after the breakout, and the pipe never leaves the clay."""
-    found = swept(8, 1.0, 60)
-    require_breakout(found, 1.0)
-    late = found.H[found.t > 0.3]
+    sunk = swept(8, 1.0, 60)
+    require_breakout(sunk, 1.0)
+    late = sunk.H[sunk.t > 0.3]
     assert 1.4 < late.min() <= late.max() < 1.75
 
 
@@ -314,7 +314,7 @@ def test_mean_stress_under_a_pipe_hangs_on_no_cells(scene: Mapping, largest: flo
     assembly = built(scene)
     run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(), Timer.new())
     soil, resumed = soil_under(assembly).whole, soil_under(built(scene)).whole
-    found = soil.output_fields().mean_stress
-    assert found.max() / SU == pytest.approx(largest, rel=0.05)
+    stress = soil.output_fields().mean_stress
+    assert stress.max() / SU == pytest.approx(largest, rel=0.05)
     resumed.restore(soil.state())
-    assert np.array_equal(resumed.output_fields().mean_stress, found)
+    assert np.array_equal(resumed.output_fields().mean_stress, stress)

@@ -67,8 +67,8 @@ def ran(name: str, folder: Path) -> dict[str, Any]:
     script = ROOT / "tests/support/imports_of_run.py"
     call = [sys.executable, str(script), str(folder / "scene.yaml"), str(folder)]
     subprocess.run(call, env=environment(), check=True, capture_output=True, timeout=HANGS)
-    found: dict[str, Any] = json.loads((folder / "found.json").read_text(encoding="utf-8"))
-    return found
+    data: dict[str, Any] = json.loads((folder / "found.json").read_text(encoding="utf-8"))
+    return data
 
 
 def imported(name: str, folder: Path) -> set[str]:
@@ -79,22 +79,22 @@ def imported(name: str, folder: Path) -> set[str]:
 
 @pytest.mark.parametrize("name", ["hanging, static", "hanging, dynamic", "over springs"])
 def test_without_soil_its_libraries_are_not_imported(name: str, tmp_path: Path) -> None:
-    found = imported(name, tmp_path)
-    assert not found & (FOR_SOIL | FOR_PICTURES | OWN_FOR_SOIL | OWN_FOR_OTHERS)
-    assert ("riser_soil.contact.seabed_contact" in found) == (name == "over springs")
-    assert ("riser_soil.sea.morison" in found) == (name != "hanging, static")
-    assert ("riser_soil.riser.inertia" in found) == (name != "hanging, static")
-    assert "riser_soil.riser.loads" not in found
-    assert not {m for m in found if m.startswith("riser_soil.code_checks")}
-    assert not {m for m in found if m.startswith("riser_soil.motion.")} - FOR_HEAVE[name != "hanging, static"]
+    modules = imported(name, tmp_path)
+    assert not modules & (FOR_SOIL | FOR_PICTURES | OWN_FOR_SOIL | OWN_FOR_OTHERS)
+    assert ("riser_soil.contact.seabed_contact" in modules) == (name == "over springs")
+    assert ("riser_soil.sea.morison" in modules) == (name != "hanging, static")
+    assert ("riser_soil.riser.inertia" in modules) == (name != "hanging, static")
+    assert "riser_soil.riser.loads" not in modules
+    assert not {m for m in modules if m.startswith("riser_soil.code_checks")}
+    assert not {m for m in modules if m.startswith("riser_soil.motion.")} - FOR_HEAVE[name != "hanging, static"]
 
 
 def test_with_soil_they_are(tmp_path: Path) -> None:
     """The names looked for are those that a soil imports; pictures are none of a run's business."""
-    found = imported("on soil", tmp_path)
-    assert found >= {"dolfinx", "ufl", "basix", "gmsh"}
-    assert found >= OWN_FOR_SOIL
-    assert not found & FOR_PICTURES
+    modules = imported("on soil", tmp_path)
+    assert modules >= {"dolfinx", "ufl", "basix", "gmsh"}
+    assert modules >= OWN_FOR_SOIL
+    assert not modules & FOR_PICTURES
 
 
 def test_hanging_riser_starts_at_once(tmp_path: Path) -> None:

@@ -68,8 +68,8 @@ def test_cases_side_by_side_are_not_mixed_up(tmp_path: Path) -> None:
     line_with(out, "12 cases", "11 of them done")
     assert [row["case"] for row in rows(tmp_path)] == names(*MANY)
     assert not (tmp_path / "out" / "cases" / ".attempts").exists()
-    with xarray.open_dataset(tmp_path / "out" / "cases.nc", engine="h5netcdf") as found:
-        tension = found["hang_top_tension"].values.reshape(4, 3)
+    with xarray.open_dataset(tmp_path / "out" / "cases.nc", engine="h5netcdf") as dataset:
+        tension = dataset["hang_top_tension"].values.reshape(4, 3)
         assert (np.diff(tension, axis=1) > 0.0).all()
         assert (np.diff(tension, axis=0) < 0.0).all()
 

@@ -36,7 +36,7 @@ def test_a_sinking_weight_falls_by_the_hyperbolic_tangent(dimension: int) -> Non
     final = np.sqrt(weight / (0.5 * RHO * 0.6))
     time = mass * final / weight
     coarse, fine = (sunk(dt, dimension) for dt in (0.04, 0.02))
-    heights = [np.array([x[:, 2].mean() for x in reported.position]) for reported in (coarse, fine)]
+    heights = [np.array([x[:, 2].mean() for x in history.position]) for history in (coarse, fine)]
     exact = -final * time * np.log(np.cosh(np.array(coarse.t) / time))
     errors = [np.abs(h - exact).max() / np.abs(exact).max() for h in (heights[0], heights[1][1::2])]
     assert errors[1] < 1e-4
@@ -50,8 +50,8 @@ def test_a_current_pushes_a_module_with_its_drag_area(dimension: int) -> None:
     module = {"at": 0.7, "mass": 10.0, "drag_area": 0.8}
     stream = WATER | {"current": {"profile": [[0.0, 1.3, 0.0]]}}
     ends = {"start": prescribed(0.0, 0.0, 0.0), "end": prescribed(0.0, 0.0, 2.0)}
-    reported = stage_histories(scene(static(), module=module, water=stream, dimension=dimension, **ends))[0].end
-    total = reported.start_force + reported.end_force
+    end = stage_histories(scene(static(), module=module, water=stream, dimension=dimension, **ends))[0].end
+    total = end.start_force + end.end_force
     assert total == pytest.approx([-0.5 * RHO * 0.8 * 1.3**2, 0.0, 10.0 * G], rel=1e-9, abs=1e-6)
 
 
@@ -63,12 +63,12 @@ def test_a_buoy_floats_at_the_draught_that_carries_its_rod(dimension: int) -> No
     scene_ = scene(
         static(), module=buoy, water=water, pipe=rod, start=prescribed(0.0, 0.0, 0.0), end="free", dimension=dimension
     )
-    reported = stage_histories(scene_)[0].end
+    end = stage_histories(scene_)[0].end
     share = (0.5 * 300.0 * 2.0 + 40.0 * G) / (RHO * G * 0.2)
     assert 0.1 < share < 0.9
     span = np.cbrt(6.0 * 0.2 / np.pi)
-    assert wet_share(0.1 - reported.position[-1, 2], span) == pytest.approx(share, rel=1e-7)
-    assert reported.start_force[2] == pytest.approx(0.5 * 300.0 * 2.0, rel=1e-7)
+    assert wet_share(0.1 - end.position[-1, 2], span) == pytest.approx(share, rel=1e-7)
+    assert end.start_force[2] == pytest.approx(0.5 * 300.0 * 2.0, rel=1e-7)
 
 
 def test_waves_accelerate_the_water_in_and_around_a_module() -> None:
@@ -83,9 +83,9 @@ def test_waves_accelerate_the_water_in_and_around_a_module() -> None:
     scheme = {"generalized_alpha": {"rho_inf": 0.0}}
     for duration in np.linspace(8.0, 16.0, 9):
         stage = dynamic(float(duration), 0.1, scheme=scheme)
-        reported = stage_histories(scene(stage, module=module, water=water, elements=2, **ends))[0].end
+        end = stage_histories(scene(stage, module=module, water=water, elements=2, **ends))[0].end
         times.append(duration)
-        pushed.append(-(reported.start_force[0] + reported.end_force[0]))
+        pushed.append(-(end.start_force[0] + end.end_force[0]))
     omega = 2.0 * np.pi / period
     amplitude = RHO * V * (1.0 + Ca) * 0.5 * height * omega**2 * np.exp(-(omega**2) / G * depth)
     assert pushed == pytest.approx(-amplitude * np.sin(omega * np.array(times)), abs=5e-3 * amplitude)

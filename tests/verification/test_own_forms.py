@@ -18,7 +18,7 @@ WAYS = {"none": None, "shown": SHOWN, "viscous": SHOWN.replace("PULL = 2.0e4, 12
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Run]:
-    found = {}
+    results = {}
     for way, text in WAYS.items():
         folder = tmp_path_factory.mktemp("run")
         given = touchdown(LAY, heave(0.9, 0.05), su=1000.0, tolerance=1e-9)
@@ -27,8 +27,8 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Run]:
             (folder / "my_terms.py").write_text(text, encoding="utf-8")
             given["soil"] |= {"forms": "my_terms.py"}
         run(scene_from_mapping(given, folder), folder / "out")
-        found[way] = Run(folder / "out")
-    return found
+        results[way] = Run(folder / "out")
+    return results
 
 
 def test_viscous_clay_takes_energy_and_the_ledger_closes(runs: dict[str, Run]) -> None:

@@ -32,8 +32,8 @@ def scene(name: str) -> Mapping:
         return at_nodes | {"contact": {"method": "node"}}
     if name == "surface":
         pressed = touchdown(LAY, heave(0.5), su=6000.0, dimension=3, tolerance=1e-10)
-        held = {"friction": {"axial": 0.4, "lateral": 0.7}, "suction": {"cap": 100.0, "reach": 0.03}}
-        return pressed | {"contact": {"method": "surface", "smoothing": 1e-3} | held}
+        holding = {"friction": {"axial": 0.4, "lateral": 0.7}, "suction": {"cap": 100.0, "reach": 0.03}}
+        return pressed | {"contact": {"method": "surface", "smoothing": 1e-3} | holding}
     if name == "kept":
         yielding = touchdown(LAY, heave(0.5), su=1000.0, tolerance=1e-10)
         contact = {"method": "surface", "smoothing": 1e-3}

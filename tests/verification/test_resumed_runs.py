@@ -58,8 +58,8 @@ def condensed_soil() -> Scene:
     """With all that contact keeps of points."""
     scene = touchdown(LAY, heave(0.6))
     scene["soil"]["law"] = {"kind": "linear-elastic", "E": 4.0e5, "nu": 0.45}
-    held = {"friction": {"axial": 0.3, "lateral": 0.6}, "suction": {"cap": 200.0, "reach": 0.02}}
-    return scene_from_mapping(scene | {"contact": {"method": "surface", "smoothing": 1e-3} | held})
+    contact = {"friction": {"axial": 0.3, "lateral": 0.6}, "suction": {"cap": 200.0, "reach": 0.02}}
+    return scene_from_mapping(scene | {"contact": {"method": "surface", "smoothing": 1e-3} | contact})
 
 
 def laid_and_lifted_on_clay() -> Scene:

@@ -80,10 +80,10 @@ def test_a_pipe_let_go_in_a_current_comes_to_drift_with_it() -> None:
         riser={"unstressed": {"points": [[0.0, 0.0, 0.0], [0.0, 0.0, 6.0]]}},
         water={"density": RHO, "current": {"profile": [[0.0, SPEED, 0.0]]}},
     )
-    reported = stage_histories(scene)[0]
-    mass, t = MASS + CA * DISPLACED, np.array(reported.t)
+    history = stage_histories(scene)[0]
+    mass, t = MASS + CA * DISPLACED, np.array(history.t)
     exact = SPEED * t - mass / ROUGH * np.log1p(ROUGH * SPEED * t / mass)
-    moved = np.array([x[:, 0].mean() for x in reported.position])
+    moved = np.array([x[:, 0].mean() for x in history.position])
     assert moved == pytest.approx(exact, abs=2e-5 * exact[-1])
 
 
@@ -134,7 +134,7 @@ def heave(lift: float, t: Array, drag: bool) -> Array:
 def test_a_lying_pipe_heaves_like_a_rigid_section(lift: float, drag: bool) -> None:
     """Also where it falls from the air; its added mass changes as it gets wet. Steps halved once, and extrapolated."""
     coarse, fine = (heaving(lift, dt, drag) for dt in (0.01, 0.005))
-    heights = [np.array([x[:, 2].mean() for x in reported.position]) for reported in (coarse, fine)]
+    heights = [np.array([x[:, 2].mean() for x in history.position]) for history in (coarse, fine)]
     both = heights[0], heights[1][1::2]
     exact = heave(lift, np.array(coarse.t), drag)
     extrapolated = (4.0 * both[1] - both[0]) / 3.0
@@ -158,22 +158,22 @@ def test_an_upright_pipe_heaves_about_its_draught() -> None:
         gravity=9.81,
         solver={"tolerance": 1e-10},
     )
-    reported = stage_histories(scene)[0]
-    middle = np.array([x[:, 2].mean() for x in reported.position]) + 0.1 * length
-    exact = lift * np.cos(np.sqrt(9.81 / (0.6 * length)) * np.array(reported.t))
+    history = stage_histories(scene)[0]
+    middle = np.array([x[:, 2].mean() for x in history.position]) + 0.1 * length
+    exact = lift * np.cos(np.sqrt(9.81 / (0.6 * length)) * np.array(history.t))
     assert middle == pytest.approx(exact, abs=2e-3 * lift)
 
 
-def balance(reported: StageHistory) -> float:
+def balance(history: StageHistory) -> float:
     """Largest error of the energy balance since the first step [J]."""
-    energy, work = np.array(reported.energy), np.cumsum(reported.work)
+    energy, work = np.array(history.energy), np.cumsum(history.work)
     return float(np.abs(energy - energy[0] - (work - work[0])).max())
 
 
 def test_heave_keeps_its_energy_to_second_order() -> None:
-    found = [balance(heaving(0.12, dt, drag=False)) for dt in (0.02, 0.01, 0.005)]
-    assert np.all(orders(found) > 1.95)
-    assert found[-1] < 1e-3 * np.ptp(heaving(0.12, 0.02, drag=False).energy)
+    errors = [balance(heaving(0.12, dt, drag=False)) for dt in (0.02, 0.01, 0.005)]
+    assert np.all(orders(errors) > 1.95)
+    assert errors[-1] < 1e-3 * np.ptp(heaving(0.12, 0.02, drag=False).energy)
 
 
 # Waves
@@ -195,7 +195,7 @@ def test_motion_in_waves_is_of_second_order_in_time(top: float, rho_inf: float) 
 @pytest.mark.parametrize(("top", "order"), [(18.0, 1.95), (21.0, 1.5)])
 def test_energy_in_waves_balances(top: float, order: float) -> None:
     """To second order; at the surface the added mass changes with the position (see `heaving`)."""
-    reported = [moved_by_waves(dt, top) for dt in (0.1, 0.05, 0.025)]
-    found = [balance(one) for one in reported]
-    assert np.all(orders(found) > order)
-    assert found[-1] < 1e-4 * np.ptp(reported[-1].energy)
+    histories = [moved_by_waves(dt, top) for dt in (0.1, 0.05, 0.025)]
+    errors = [balance(one) for one in histories]
+    assert np.all(orders(errors) > order)
+    assert errors[-1] < 1e-4 * np.ptp(histories[-1].energy)

@@ -35,9 +35,9 @@ def rocked(
     return stage_histories(scene)[-1]
 
 
-def missing(reported: StageHistory) -> float:
+def missing(history: StageHistory) -> float:
     """Energy that no work accounts for, over the largest energy."""
-    return float(np.abs(np.array(reported.energy) - np.cumsum(reported.work)).max() / max(reported.energy))
+    return float(np.abs(np.array(history.energy) - np.cumsum(history.work)).max() / max(history.energy))
 
 
 @pytest.mark.parametrize("rotation", ["fixed", {"stiffness": 3.0e4}])
@@ -51,8 +51,8 @@ def test_work_of_the_turning_support_is_the_energy_of_the_pipe(
     assert missing(coarse) / missing(fine) == pytest.approx(4.0, rel=0.3)
 
 
-def tip(reported: StageHistory) -> Array:
-    return np.array(reported.position)[:, -1]
+def tip(history: StageHistory) -> Array:
+    return np.array(history.position)[:, -1]
 
 
 @pytest.mark.parametrize("rotation", ["fixed", {"stiffness": 3.0e4}])

@@ -52,16 +52,16 @@ def test_bending_frequencies_are_rayleighs() -> None:
 
 def test_bending_frequencies_converge_at_second_order() -> None:
     """As the rotary inertia sits at the nodes; it takes a sixth off this frequency."""
-    found = np.array([frequencies(2, count, [1, 2])[2] for count in (10, 20, 40)])
-    assert orders(found / rayleigh(np.array([3.0])) - 1.0) == pytest.approx([2.0, 2.0], abs=0.1)
+    values = np.array([frequencies(2, count, [1, 2])[2] for count in (10, 20, 40)])
+    assert orders(values / rayleigh(np.array([3.0])) - 1.0) == pytest.approx([2.0, 2.0], abs=0.1)
 
 
 def test_torsional_frequency_converges_at_second_order() -> None:
     """A bar whose ends are free to spin: w = pi/L sqrt(GJ/J), J = 2 rho I; the lowest frequency is that of its spin."""
     exact = np.pi / LENGTH * np.sqrt(GJ / (2.0 * INERTIA))
-    found = np.array([frequencies(3, count, [3])[:2] for count in (8, 16, 32)])
-    assert np.all(found[:, 0] < 1e-3 * exact)
-    errors = found[:, 1] / exact - 1.0
+    values = np.array([frequencies(3, count, [3])[:2] for count in (8, 16, 32)])
+    assert np.all(values[:, 0] < 1e-3 * exact)
+    errors = values[:, 1] / exact - 1.0
     assert orders(errors) == pytest.approx([2.0, 2.0], abs=0.05)
     assert abs(errors[-1]) < 1e-3
 

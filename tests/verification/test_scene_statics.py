@@ -92,8 +92,8 @@ def test_45_degree_bend(solve: Solve) -> None:
     frame = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     EI = 8.333333333e5
     rod = Rod(25.0 * np.pi, 1e7, np.full(3, EI), np.array([0.0, 0.0, 0.01]), frame)
-    found = solve("bend45.yaml", "solver.tolerance=1e-10")["position"][-1, -1]
-    assert np.linalg.norm(found - tip(rod, np.array([0.0, 0.0, 600.0]), np.zeros(3))) < 2e-4
+    position = solve("bend45.yaml", "solver.tolerance=1e-10")["position"][-1, -1]
+    assert np.linalg.norm(position - tip(rod, np.array([0.0, 0.0, 600.0]), np.zeros(3))) < 2e-4
 
 
 # Beams with known deflections, loaded so little that they stay straight

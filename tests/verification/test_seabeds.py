@@ -51,9 +51,9 @@ def lying(
     return stage_histories(scene)[-1].end
 
 
-def resting(found: Record) -> slice:
+def resting(record: Record) -> slice:
     """Nodes well within the stretch that lies on the ground."""
-    touching = np.flatnonzero(found.contact_force > 0.0)
+    touching = np.flatnonzero(record.contact_force > 0.0)
     return slice(int(touching[0]) + 12, int(touching[-1]) - 12)
 
 
@@ -61,18 +61,18 @@ def resting(found: Record) -> slice:
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_riser_on_a_slope(method: str, dimension: int) -> None:
     """Where it lies straight the ground bears w cos(slope), and the tension grows uphill by w sin(slope)."""
-    found = lying({"slope_deg": SLOPE}, method, dimension=dimension)
-    at = resting(found)
-    assert len(found.contact_force[at]) > 10
+    record = lying({"slope_deg": SLOPE}, method, dimension=dimension)
+    at = resting(record)
+    assert len(record.contact_force[at]) > 10
     cosine, sine = np.cos(np.radians(SLOPE)), np.sin(np.radians(SLOPE))
-    assert found.contact_force[at] == pytest.approx(W * cosine, rel=1e-4)
-    assert np.diff(found.effective_tension[at]) == pytest.approx(np.full(at.stop - at.start - 1, W * sine), rel=1e-3)
-    total = found.start_force + found.end_force
-    assert total[2] == pytest.approx(150.0 * W - np.sum(_tributary(found) * found.contact_force) * cosine, rel=1e-6)
+    assert record.contact_force[at] == pytest.approx(W * cosine, rel=1e-4)
+    assert np.diff(record.effective_tension[at]) == pytest.approx(np.full(at.stop - at.start - 1, W * sine), rel=1e-3)
+    total = record.start_force + record.end_force
+    assert total[2] == pytest.approx(150.0 * W - np.sum(_tributary(record) * record.contact_force) * cosine, rel=1e-6)
 
 
-def _tributary(found: Record) -> np.ndarray:
-    share = np.full(len(found.contact_force), 1.0)
+def _tributary(record: Record) -> np.ndarray:
+    share = np.full(len(record.contact_force), 1.0)
     share[[0, -1]] = 0.5
     return share
 
@@ -88,14 +88,14 @@ def test_profile_of_the_slope_is_the_slope() -> None:
 def test_riser_over_a_trench(method: str) -> None:
     """Sunk in or spanning it, the riser is borne by supports and ground together; it follows gentle ground."""
     profile = [[-10.0, 0.0], [0.0, 0.0], [20.0, -0.4], [40.0, 0.0], [60.0, 0.0], [150.0, 0.0]]
-    found = lying({"profile": profile}, method)
-    along = found.position @ np.array([0.8, 0.6, 0.0])
-    lowest = found.position[np.argmin(found.position[:, 2])]
+    record = lying({"profile": profile}, method)
+    along = record.position @ np.array([0.8, 0.6, 0.0])
+    lowest = record.position[np.argmin(record.position[:, 2])]
     assert -0.45 < lowest[2] < -0.2
-    assert 15.0 < along[np.argmin(found.position[:, 2])] < 25.0
-    touched = found.contact_force > 0.0
+    assert 15.0 < along[np.argmin(record.position[:, 2])] < 25.0
+    touched = record.contact_force > 0.0
     assert touched[(along > 5.0) & (along < 15.0)].any()
-    vertical = found.start_force[2] + found.end_force[2] + np.sum(_tributary(found) * found.contact_force)
+    vertical = record.start_force[2] + record.end_force[2] + np.sum(_tributary(record) * record.contact_force)
     assert vertical == pytest.approx(150.0 * W, rel=2e-3)  # the ground's push leans by its slope, 1/25 at most
 
 
@@ -124,11 +124,11 @@ CLAY = {"kind": "randolph-quiggin", "su": 2e3, "su_gradient": 1.5e3}
 def test_riser_at_rest_on_hysteretic_clay(law: str) -> None:
     """Well behind the touchdown point it lies as deep as the law answers with its weight."""
     clay = {"kind": "hysteretic", "stiffness": None, "law": CLAY | {"kind": law}}
-    found = lying(clay, dimension=2)
-    at = resting(found)
-    assert found.contact_force[at] == pytest.approx(W, rel=1e-4)
+    record = lying(clay, dimension=2)
+    at = resting(record)
+    assert record.contact_force[at] == pytest.approx(W, rel=1e-4)
     known = LAWS[law](**CLAY | {"kind": law}).of_pipe(0.3)
-    depth = -found.position[at, 2]
+    depth = -record.position[at, 2]
     force = known.update(depth, known.initial_history(depth.shape)).force
     assert force == pytest.approx(W, rel=1e-3)
 
@@ -141,9 +141,9 @@ def test_pulled_riser_slides_as_far_as_friction_lets_it(dimension: int) -> None:
     """Where it has slid, its tension falls by mu w per length towards the anchor, and nowhere faster."""
     pull = static("pull", move={"end": [92.0, 69.0, 60.0]})
     friction = {"friction": {"axial": MU, "mobilisation": 1e-4}}
-    found = lying({}, dimension=dimension, more_stages=(pull,), more_contact=friction)
+    record = lying({}, dimension=dimension, more_stages=(pull,), more_contact=friction)
     lain = lying({}, dimension=dimension, more_contact=friction)
-    T, f = found.effective_tension, found.contact_force
+    T, f = record.effective_tension, record.contact_force
     lying_there = np.flatnonzero((f[:-1] > 0.9 * W) & (f[1:] > 0.9 * W))
     share = np.diff(T)[lying_there] / (MU * 0.5 * (f[lying_there] + f[lying_there + 1]))
     assert T.max() > lain.effective_tension.max() + 500.0

@@ -39,14 +39,14 @@ def on_sections(linear: str, tolerance: float = 1e-11, **contact: Any) -> Mappin
 
 def steps(scene: Mapping) -> list[Array]:
     """Increments of all steps."""
-    assembly, found, state = built(scene), list[Array](), None
+    assembly, states, state = built(scene), list[Array](), None
 
     def watch(system: System, step: AcceptedStep) -> None:
-        found.append(step.solution.state.u)
+        states.append(step.solution.state.u)
 
     for stage in assembly.scene.stages:
         state = take(assembly, stage, state, watch)
-    return found
+    return states
 
 
 def backward_error(system: System, x: Array, load: Array) -> float:
@@ -72,17 +72,17 @@ def test_each_newton_step_solves_its_linear_system(contact: Mapping, monkeypatch
     """
     errors, made, usual, factorise = list[float](), list[int](), SectionSolver.apply, SectionFactors.factorise
 
-    def judge(solver: SectionSolver, pc: PETSc.PC, load: PETSc.Vec, found: PETSc.Vec) -> None:
-        usual(solver, pc, load, found)
-        errors.append(backward_error(solver._system, found.array_r, load.array_r))
+    def judge(solver: SectionSolver, pc: PETSc.PC, load: PETSc.Vec, solution: PETSc.Vec) -> None:
+        usual(solver, pc, load, solution)
+        errors.append(backward_error(solver._system, solution.array_r, load.array_r))
 
-    def taken(factors: SectionFactors, csr: Csr, coupled: BoolArray) -> bool:
+    def accepted(factors: SectionFactors, csr: Csr, coupled: BoolArray) -> bool:
         sound = factorise(factors, csr, coupled)
         made.append(int(factors.bands.renewed.sum()))
         return sound
 
     monkeypatch.setattr(SectionSolver, "apply", judge)
-    monkeypatch.setattr(SectionFactors, "factorise", taken)
+    monkeypatch.setattr(SectionFactors, "factorise", accepted)
     steps(on_sections("auto", tolerance=1e-7, **contact))
     assert max(errors) < 1e-11
     assert len(errors) > 20
@@ -145,7 +145,7 @@ def test_runs_are_the_same_on_any_number_of_ranks(ranks: int, direct: Run, tmp_p
         scale = np.nanmax(np.abs(direct[name]))
         np.testing.assert_allclose(sections[name], direct[name], rtol=0.0, atol=1e-8 * scale, err_msg=name)
     for name, values in direct.soil_frame().fields.items():  # ranks write their sections in turn
-        found, expected = (np.sort(each, axis=0) for each in (sections.soil_frame().fields[name], values))
-        np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-7 * np.abs(values).max(), err_msg=name)
+        computed, expected = (np.sort(each, axis=0) for each in (sections.soil_frame().fields[name], values))
+        np.testing.assert_allclose(computed, expected, rtol=0.0, atol=1e-7 * np.abs(values).max(), err_msg=name)
     assert direct["contact_force"].max() > 0.0
     assert direct.soil_frame().fields["equivalent_plastic_strain"].max() > 0.0

@@ -51,5 +51,5 @@ def test_sections_settle_more_than_a_block_by_what_is_foretold(lengths: float) -
     half = math.pi * length
     plan, line, along = ((0.0, half), (-3.0 * DEPTH, 3.0 * DEPTH)), ((0.0, 0.0), (half, 0.0)), half / CELLS
     spec = BlockSpec(*plan, DEPTH, 0.5 * WIDTH, 0.8, riser=line, along=along, strip=2.0 * WIDTH)
-    found = settlement(slice_grid(MPI.COMM_SELF, spec), length) / settlement(block_grid(MPI.COMM_SELF, spec), length)
-    assert found == pytest.approx(1.0 + excess_of_sections(length, WIDTH, DEPTH), abs=0.05)
+    ratio = settlement(slice_grid(MPI.COMM_SELF, spec), length) / settlement(block_grid(MPI.COMM_SELF, spec), length)
+    assert ratio == pytest.approx(1.0 + excess_of_sections(length, WIDTH, DEPTH), abs=0.05)

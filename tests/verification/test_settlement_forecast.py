@@ -28,13 +28,13 @@ CLAYS: dict[str, Mapping] = {
 def test_settlement_is_foretold_within_half_of_it(clay: str) -> None:
     """0.90 to 1.36 times what was found: on cells of D/16, pushed to 0.15 D in 60 steps."""
     scene = sinking(16, 0.15, 60, CLAYS[clay] | {"su": SU})
-    found, soil = sink(scene), scene_from_mapping(scene).soil
+    sunk, soil = sink(scene), scene_from_mapping(scene).soil
     assert soil is not None
-    rises = np.maximum.accumulate(found.V) + 1e-9 * np.arange(found.V.size)
+    rises = np.maximum.accumulate(sunk.V) + 1e-9 * np.arange(sunk.V.size)
     for load in LOADS:
-        expected = D * float(np.interp(load, rises, found.w))
-        reported = settlement(soil, Scales(load * SU * D, D, 1.0), 5.0 * D)
-        assert 1.0 / 1.5 < reported / expected < 1.5
+        expected = D * float(np.interp(load, rises, sunk.w))
+        predicted = settlement(soil, Scales(load * SU * D, D, 1.0), 5.0 * D)
+        assert 1.0 / 1.5 < predicted / expected < 1.5
 
 
 @pytest.mark.verify

@@ -91,11 +91,11 @@ def test_a_pipe_that_nothing_bears_is_told_to_sink_on(monkeypatch: pytest.Monkey
 def test_a_pipe_that_its_supports_push_far_does_not_settle(monkeypatch: pytest.MonkeyPatch) -> None:
     """By D/30 a step, farther than a riser may sink of itself."""
     monkeypatch.setattr(stages, "PRESSED_BY", 1 / 30)
-    found = sink(sinking(CELLS, 0.1, 3))
-    print(found.w, found.V)
-    assert found.w[-1] == pytest.approx(0.1)
-    assert found.w.size < 12, "load steps, some of them cut"
-    assert found.V[-1] == pytest.approx(sink(sinking(CELLS, 0.1, 40)).V[-1], rel=0.1)
+    sunk = sink(sinking(CELLS, 0.1, 3))
+    print(sunk.w, sunk.V)
+    assert sunk.w[-1] == pytest.approx(0.1)
+    assert sunk.w.size < 12, "load steps, some of them cut"
+    assert sunk.V[-1] == pytest.approx(sink(sinking(CELLS, 0.1, 40)).V[-1], rel=0.1)
 
 
 def test_a_pipe_that_creeps_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -61,13 +61,13 @@ def test_a_heaped_chain_hangs_by_its_own_weight(
     length: float, elements: int, more: dict[str, Any], tmp_path: Path
 ) -> None:
     """The top bears what hangs down to the seabed, whatever the mesh, the anchor nothing, and no node pushes."""
-    found = done(slack(length, elements, **more), tmp_path)
+    run = done(slack(length, elements, **more), tmp_path)
     ends = ("start_force", "end_force") if more.get("turned") else ("end_force", "start_force")
-    top, anchor = (found[name][-1] for name in ends)
+    top, anchor = (run[name][-1] for name in ends)
     assert top[2] == pytest.approx(W * HEIGHT, rel=1e-3)
     assert np.abs([top[0], top[1], anchor[0], anchor[1]]).max() < PULLS * length / SPAN * W * HEIGHT
-    assert found["effective_tension"][-1].min() > -1e-4 * W * HEIGHT
-    position = found["position"][-1]
+    assert run["effective_tension"][-1].min() > -1e-4 * W * HEIGHT
+    position = run["position"][-1]
     hangs = position[:, 2] > 0.01 * HEIGHT
     assert np.abs(position[hangs, 0] - SPAN).max() < 0.02 * HEIGHT
     assert position[:, 2].min() > -0.5
@@ -91,11 +91,11 @@ def test_floats_and_clumps_make_kinks(
     """
     scene = dict(slack(length, elements, water={"density": WATER}))
     scene["riser"] |= {"attachments": [hung(*each) for each in hangs]}
-    found = done(scene, tmp_path)
+    run = done(scene, tmp_path)
     ends = np.array([0.0, 0.0, 0.0]), np.array([SPAN, 0.0, HEIGHT])
     cable = catenary(np.linspace(0.0, length, 2), *ends, W, CHAIN["EA"], level=0.0, points=np.array(hangs))
-    assert np.linalg.norm(found["end_force"][-1]) == pytest.approx(cable.tension[-1], rel=1.5e-3)
-    assert found["end_force"][-1][0] == pytest.approx(cable.H, rel=3e-3)
+    assert np.linalg.norm(run["end_force"][-1]) == pytest.approx(cable.tension[-1], rel=1.5e-3)
+    assert run["end_force"][-1][0] == pytest.approx(cable.H, rel=3e-3)
 
 
 @pytest.mark.parametrize(
@@ -124,14 +124,14 @@ def test_a_slack_line_between_ends_above_each_other_hangs_in_two_legs(
     names = ("end", "start") if more.pop("turned", False) else ("start", "end")
     ends: Mapping = {name: prescribed(*at) for name, at in zip(names, (low, high), strict=True)}
     scene = riser_scene(static(), pipe=pipe, length=length, elements=elements, gravity=9.81, **ends, **more)
-    found = done(scene, tmp_path)
+    run = done(scene, tmp_path)
     lower, upper = (
-        found[f"{name}_force"][-1][2] for name in (names if pipe["submerged_weight"] > 0.0 else names[::-1])
+        run[f"{name}_force"][-1][2] for name in (names if pipe["submerged_weight"] > 0.0 else names[::-1])
     )
     weight, below = pipe["submerged_weight"], max(0.0, 0.5 * (length - 1.0))
     assert upper == pytest.approx(weight * (length - below), rel=1e-3)
     assert lower == pytest.approx(weight * below, abs=1e-3 * abs(weight) * length)
-    assert found["effective_tension"][-1].min() > -1e-3 * abs(weight) * length
+    assert run["effective_tension"][-1].min() > -1e-3 * abs(weight) * length
     with (tmp_path / "summary.json").open() as file:
         assert "laying" not in json.load(file)
 
@@ -146,8 +146,8 @@ def test_a_slack_line_between_ends_above_each_other_hangs_in_two_legs(
 )
 def test_what_lies_in_the_heap_does_not_count_at_the_top(more: dict[str, Any], tmp_path: Path) -> None:
     """A clump sinks in, friction holds what lies; the top bears what hangs."""
-    found = done(slack(1.3 * (SPAN + HEIGHT), 40, **more), tmp_path)
-    assert found["end_force"][-1][2] == pytest.approx(W * HEIGHT, rel=1e-3)
+    run = done(slack(1.3 * (SPAN + HEIGHT), 40, **more), tmp_path)
+    assert run["end_force"][-1][2] == pytest.approx(W * HEIGHT, rel=1e-3)
 
 
 def test_a_heap_is_the_same_on_two_ranks(tmp_path: Path) -> None:
@@ -175,9 +175,9 @@ INERTIA = (CHAIN["mass"] + 0.1 * 1025.0 * np.pi / 4.0 * 0.15**2) * HEIGHT * (2.0
 
 def test_a_heap_under_a_mildly_moving_end_runs_to_its_end(tmp_path: Path) -> None:
     """The top bears what hangs, within a percent at rest, and in motion its inertia, with what comes down."""
-    found = heaved(10, tmp_path)
-    assert found["time"][-1] == pytest.approx(13.5)
-    top = found["end_force"][:, 2]
+    run = heaved(10, tmp_path)
+    assert run["time"][-1] == pytest.approx(13.5)
+    top = run["end_force"][:, 2]
     assert top[0] == pytest.approx(W * HEIGHT, rel=1.5e-2)
     assert np.abs(top - W * HEIGHT).max() < 4.0 * INERTIA
     assert np.ptp(top) > INERTIA
@@ -186,9 +186,9 @@ def test_a_heap_under_a_mildly_moving_end_runs_to_its_end(tmp_path: Path) -> Non
 @pytest.mark.verify
 def test_short_elements_that_snap_under_a_moving_end_are_warned_of(tmp_path: Path) -> None:
     """They are picked up one by one, by the wave of their speed: the top's tension is several times what it should."""
-    found = heaved(100, tmp_path)
-    assert np.abs(found["end_force"][:, 2] - W * HEIGHT).max() > 4.0 * INERTIA
-    warnings = found.summary["stages"][1]["warnings"]
+    run = heaved(100, tmp_path)
+    assert np.abs(run["end_force"][:, 2] - W * HEIGHT).max() > 4.0 * INERTIA
+    warnings = run.summary["stages"][1]["warnings"]
     for words in ("the line is compressed by", "the energy balance is"):
         assert lines_with(warnings, words)
 
@@ -212,20 +212,20 @@ def test_a_heap_lies_right_under_its_top(
     more = dict(more)
     turned = more.pop("turned", False)
     ends: Mapping = {"start": high, "end": low} if turned else {"start": low, "end": high}
-    found = done(heap_under(length * HEIGHT, elements, **ends, **more), tmp_path)
-    top, anchor = (found[f"{name}_force"][-1] for name in (("start", "end") if turned else ("end", "start")))
+    run = done(heap_under(length * HEIGHT, elements, **ends, **more), tmp_path)
+    top, anchor = (run[f"{name}_force"][-1] for name in (("start", "end") if turned else ("end", "start")))
     assert top[2] == pytest.approx(W * HEIGHT, rel=1e-3)
     assert np.linalg.norm(anchor) < PULLS * W * HEIGHT
-    assert found["effective_tension"][-1].min() > -PULLS * W * HEIGHT
+    assert run["effective_tension"][-1].min() > -PULLS * W * HEIGHT
 
 
 @pytest.mark.parametrize(("span", "elements"), [(0.0, 10), (1.0, 100)])
 def test_two_legs_hang_side_by_side_to_one_heap(span: float, elements: int, tmp_path: Path) -> None:
     """Each bears its own weight down to the seabed."""
     ends: Mapping = {"start": prescribed(0.0, 0.0, HEIGHT), "end": prescribed(span, 0.0, HEIGHT)}
-    found = done(heap_under(2.5 * HEIGHT, elements, **ends), tmp_path)
+    run = done(heap_under(2.5 * HEIGHT, elements, **ends), tmp_path)
     for name in ("start", "end"):
-        assert found[f"{name}_force"][-1][2] == pytest.approx(W * HEIGHT, rel=1e-3)
+        assert run[f"{name}_force"][-1][2] == pytest.approx(W * HEIGHT, rel=1e-3)
 
 
 @pytest.mark.parametrize(("span", "elements", "dimension"), [(0.0, 10, 2), (0.1, 40, 3)])
@@ -236,10 +236,10 @@ def test_a_rope_that_floats_lies_in_a_heap_over_its_anchor(
     rope: Mapping = {"EA": 6e7, "EI": 0.0, "GJ": 1.0, "outer_diameter": 0.25, "mass": 20.0}
     water = {"surface_level": HEIGHT, "depth": HEIGHT, "density": WATER}
     ends: Mapping = {"start": prescribed(0.0, 0.0, 0.0), "end": prescribed(span, 0.0, HEIGHT)}
-    found = done(heap_under(1.3 * HEIGHT, elements, **ends, pipe=rope, water=water, dimension=dimension), tmp_path)
+    run = done(heap_under(1.3 * HEIGHT, elements, **ends, pipe=rope, water=water, dimension=dimension), tmp_path)
     lift = GRAVITY * (WATER * np.pi / 4.0 * 0.25**2 - 20.0) * HEIGHT
-    assert found["start_force"][-1][2] == pytest.approx(-lift, rel=1e-3)
-    assert np.linalg.norm(found["end_force"][-1]) < PULLS * lift
+    assert run["start_force"][-1][2] == pytest.approx(-lift, rel=1e-3)
+    assert np.linalg.norm(run["end_force"][-1]) < PULLS * lift
 
 
 def heap_under(length: float, elements: int, **more: Any) -> Mapping:

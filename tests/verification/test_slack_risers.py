@@ -33,50 +33,50 @@ def done(scene: Mapping, folder: Path) -> Run:
 
 def test_hairpin_under_coinciding_ends(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Symmetric about the vertical; each end bears half the weight, and the loop's two legs push each other apart."""
-    found = done(slack_scene(0.0, 0.0, 0.0), tmp_path)
-    start, end = found["start_force"][-1], found["end_force"][-1]
+    run = done(slack_scene(0.0, 0.0, 0.0), tmp_path)
+    start, end = run["start_force"][-1], run["end_force"][-1]
     assert np.abs(start + end - [0.0, 0.0, 60.0 * W]).max() < 1e-8 * 60.0 * W
     assert start[2] == pytest.approx(30.0 * W, rel=1e-8)
     assert end[0] < 0.0
-    position = found["position"][-1]
+    position = run["position"][-1]
     assert position[:, 0] == pytest.approx(-position[::-1, 0], abs=1e-7)
     assert position[30, 2] == pytest.approx(-29.0, abs=0.5)
     assert np.linalg.norm(np.diff(position, axis=0), axis=1).sum() == pytest.approx(60.0, rel=5e-3)
-    laying = found.summary["laying"]
+    laying = run.summary["laying"]
     assert laying["slack"] > 1.0
     line_with(capsys.readouterr().out, "riser is slack:", f"{laying['slack']:.4g} m too far")
 
 
 def test_a_taut_vertical_riser_is_not_called_slack(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Between ends farther apart than its length, it begins straight, in balance."""
-    found = done(slack_scene(0.0, 0.0, 60.06), tmp_path)
-    assert found["effective_tension"][-1].min() > 0.0
-    assert "laying" not in found.summary
+    run = done(slack_scene(0.0, 0.0, 60.06), tmp_path)
+    assert run["effective_tension"][-1].min() > 0.0
+    assert "laying" not in run.summary
     assert "slack" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_top_above_the_bottom(dimension: int, tmp_path: Path) -> None:
-    found = done(slack_scene(0.0, 0.0, 40.0, dimension=dimension), tmp_path)
-    total = found["start_force"][-1] + found["end_force"][-1]
+    run = done(slack_scene(0.0, 0.0, 40.0, dimension=dimension), tmp_path)
+    total = run["start_force"][-1] + run["end_force"][-1]
     assert np.abs(total - [0.0, 0.0, 60.0 * W]).max() < 1e-8 * 60.0 * W
-    assert found["position"][-1, -1] == pytest.approx([0.0, 0.0, 40.0], abs=1e-12)
-    assert found.summary["stages"][0]["method"] == "newton"
+    assert run["position"][-1, -1] == pytest.approx([0.0, 0.0, 40.0], abs=1e-12)
+    assert run.summary["stages"][0]["method"] == "newton"
 
 
 def test_some_slack_on_the_seabed_is_borne_in_compression(tmp_path: Path) -> None:
     """What the seabed bears and the ends carry is the weight."""
     seabed = {"kind": "rigid", "level": 0.0, "contact_at": "axis"}
-    found = done(slack_scene(40.0, 0.0, 15.0, length=58.0, elements=116, seabed=seabed), tmp_path)
-    total = found["start_force"][-1] + found["end_force"][-1] + found["contact_force_sum"][-1]
+    run = done(slack_scene(40.0, 0.0, 15.0, length=58.0, elements=116, seabed=seabed), tmp_path)
+    total = run["start_force"][-1] + run["end_force"][-1] + run["contact_force_sum"][-1]
     assert np.abs(total - [0.0, 0.0, 58.0 * W]).max() < 1e-8 * 58.0 * W
-    assert found["end_force"][-1, 0] < 0.0
+    assert run["end_force"][-1, 0] < 0.0
 
 
 def test_dynamics_may_come_first(tmp_path: Path) -> None:
     """The laid riser is at rest, and stays so."""
-    found = done(slack_scene(0.0, 0.0, 40.0, stages=(dynamic(1.0, 0.1),)), tmp_path)
-    assert np.ptp(found["end_force"], axis=0).max() < 1e-4 * 60.0 * W
+    run = done(slack_scene(0.0, 0.0, 40.0, stages=(dynamic(1.0, 0.1),)), tmp_path)
+    assert np.ptp(run["end_force"], axis=0).max() < 1e-4 * 60.0 * W
 
 
 def test_a_loop_too_tight_for_its_elements_is_reported(tmp_path: Path) -> None:

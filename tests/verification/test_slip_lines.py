@@ -28,8 +28,8 @@ def test_slip_lines_are_in_equilibrium(at_strip: float) -> None:
 
 def _unbalanced(lines: int, at_strip: float) -> float:
     """Difference of the forces through the strip and through the last line, over the strip's load."""
-    found = field(lines, 1.5, at_strip)
-    strip, last = (forces(np.array(points)).sum(axis=0) for points in ([line[-1] for line in found], found[-1]))
+    rows = field(lines, 1.5, at_strip)
+    strip, last = (forces(np.array(points)).sum(axis=0) for points in ([line[-1] for line in rows], rows[-1]))
     return float(np.linalg.norm(strip - last) / strip[1])
 
 
@@ -61,8 +61,8 @@ def test_strip_on_clay_that_grows_stronger_bears_what_slip_lines_tell(tell: Tell
     pressed = [press_graded_strip(size, 0.25, law, rough=rough, fine=1.0, depth=0.1) for size in sizes]
     errors = np.array([strip.load[-1] for strip in pressed]) / exact - 1.0
     rate, extrapolated = np.log2(errors[0] / errors[1]), 2.0 * errors[1] - errors[0]
-    found = f"{signed_percent(errors)} | {rate:.1f} | {signed_percent([extrapolated])}"
-    tell({f"growing {ratio:g} {'rough' if rough else 'smooth'}": found})
+    row = f"{signed_percent(errors)} | {rate:.1f} | {signed_percent([extrapolated])}"
+    tell({f"growing {ratio:g} {'rough' if rough else 'smooth'}": row})
     assert pressed[1].load[-1] - pressed[1].load[-2] < 1e-3 * exact, "the load still rises"
     assert 0.0 < errors[1] < (0.05 if rough else 0.02)
     assert rate > 0.65

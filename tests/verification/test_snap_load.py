@@ -54,7 +54,7 @@ def dropped(elements: int, time_step: float) -> Mapping:
     return riser_scene(dynamic(1.2, time_step), pipe=pipe, length=L, elements=elements, **ends)
 
 
-def reported(elements: int, time_step: float) -> tuple[float, float, float]:
+def peaks(elements: int, time_step: float) -> tuple[float, float, float]:
     """Largest tension at the weight and anywhere [N], and the most energy above that of the start [J]."""
     assembly = build(scene_from_mapping(dropped(elements, time_step)), MPI.COMM_SELF)
     tension, energy = list[tuple[float, float]](), list[float]()
@@ -82,7 +82,7 @@ def reported(elements: int, time_step: float) -> tuple[float, float, float]:
 )
 def test_no_more_than_the_fall_gives(elements: int, time_step: float) -> None:
     """The slack that bends takes some 7 % of the peak."""
-    at_weight, anywhere, created = reported(elements, time_step)
+    at_weight, anywhere, created = peaks(elements, time_step)
     print(f"{elements} elements, {time_step} s: {at_weight / PEAK:.4f}, {anywhere / PEAK:.4f} of it; {created} J")
     assert 0.9 * PEAK < at_weight <= anywhere < PEAK
     assert created < 0.05 * WEIGHT * SLACK

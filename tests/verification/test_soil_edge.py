@@ -80,7 +80,7 @@ def test_penetration_of_a_law_bears_the_weight() -> None:
     assert penetration(law, 1.0e9, D) == D
 
 
-def reported(mapping: Mapping) -> list[str]:
+def warnings_of(mapping: Mapping) -> list[str]:
     return [line for line in describe(scene_from_mapping(mapping)).splitlines() if "seabed beside" in line]
 
 
@@ -91,25 +91,25 @@ def beside(seabed: Mapping, **soil: Any) -> Mapping:
 
 def test_check_tells_the_step() -> None:
     """728 N/m sink 7.3 mm into springs of 1e5 N/m2, about as much into the soil."""
-    (line,) = reported(beside({"kind": "spring", "stiffness": 1.0e5}))
+    (line,) = warnings_of(beside({"kind": "spring", "stiffness": 1.0e5}))
     line_with([line], "7.3 mm in the seabed", "(1e+05 N/m2)", "a step of")
 
 
 def test_a_step_is_warned_of() -> None:
     soft = {"law": {**CLAY, "su": 150.0, "su_gradient": 600.0}}
-    warning, fact = reported(beside({"kind": "rigid"}, **soft))
+    warning, fact = warnings_of(beside({"kind": "rigid"}, **soft))
     assert re.search(r"\d mm higher", warning)
     stiffness = float(warning.split("take seabed.stiffness ")[1].split()[0])
     assert f"({stiffness:.2g} N/m2)" in fact
-    assert len(reported(beside({"kind": "spring", "stiffness": stiffness}, **soft))) == 1
+    assert len(warnings_of(beside({"kind": "spring", "stiffness": stiffness}, **soft))) == 1
 
 
 def test_a_trench_that_ends_at_the_edge_is_reported() -> None:
     mesh = {"kind": "tet", "size_at_riser": 0.4, "size_far": 0.8}
     mapping = beside({"kind": "spring", "stiffness": 1.0e5}, mesh=mesh)
     mapping["soil"]["block"]["trench"] = {"depth": 0.25, "width": 0.6, "side_slope_deg": 60.0}
-    warning, fact = reported(mapping)
+    warning, fact = warnings_of(mapping)
     line_with([fact], "250 mm deep", "edge")
     line_with([warning], "end within the block")
     mapping["soil"]["block"]["trench"] |= {"along": [4.0, 7.0], "run_out": 1.0}
-    assert len(reported(mapping)) == 1
+    assert len(warnings_of(mapping)) == 1

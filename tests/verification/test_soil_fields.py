@@ -86,5 +86,5 @@ def by_place(run: Run, name: str) -> Array:
 def test_two_ranks_write_the_same_fields(pressed: Run, tmp_path: Path) -> None:
     other = ran(scene(0, 1), tmp_path / "two", 2)
     for name in (*TENSORS, *NUMBERS):
-        found, wanted = by_place(other, name), by_place(pressed, name)
-        np.testing.assert_allclose(found, wanted, atol=1e-4 * float(np.abs(wanted).max()), err_msg=name)
+        fields, wanted = by_place(other, name), by_place(pressed, name)
+        np.testing.assert_allclose(fields, wanted, atol=1e-4 * float(np.abs(wanted).max()), err_msg=name)

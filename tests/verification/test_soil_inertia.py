@@ -32,28 +32,28 @@ def scene(soil: Mapping, stage: Mapping) -> Mapping:
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Run]:
-    found = {}
+    results = {}
     for way, given in WAYS.items():
         folder = tmp_path_factory.mktemp("run")
         run(scene_from_mapping(scene(*given)), folder)
-        found[way] = Run(folder)
-    return found
+        results[way] = Run(folder)
+    return results
 
 
 def energy(of: Run) -> dict[str, Any]:
-    found: dict[str, Any] = of.summary["stages"][1]["energy"]
-    return found
+    values: dict[str, Any] = of.summary["stages"][1]["energy"]
+    return values
 
 
 @pytest.mark.parametrize("way", [way for way in WAYS if way != "quasi-static"])
 def test_the_ledger_closes(runs: dict[str, Run], way: str) -> None:
     """To what the scheme makes of quasi-static soil; the soil's own share is not the scheme's."""
-    taken = energy(runs[way])["dissipated_by"]
+    lost = energy(runs[way])["dissipated_by"]
     assert abs(energy(runs[way])["relative_residual"]) < 2.0 * abs(energy(runs["quasi-static"])["relative_residual"])
-    assert taken["soil_time_scheme"] == 0.0
-    assert taken["soil_plasticity"] > 0.0
-    assert ("soil_boundary" in taken) == (way in ("absorbing", "Newmark"))
-    assert taken.get("soil_boundary", 1.0) > 0.0
+    assert lost["soil_time_scheme"] == 0.0
+    assert lost["soil_plasticity"] > 0.0
+    assert ("soil_boundary" in lost) == (way in ("absorbing", "Newmark"))
+    assert lost.get("soil_boundary", 1.0) > 0.0
 
 
 def test_slow_motion_is_that_on_quasi_static_soil(runs: dict[str, Run]) -> None:

@@ -163,11 +163,11 @@ def test_a_stiff_pipe_is_pressed_into_fine_cells_in_few_iterations() -> None:
     """Some 200 with those of the steps that fail, where clay flows and its tangent all but vanishes; 410 without a
     share of the elastic one. No settling and no relaxation, which find nothing while supports move.
     """
-    assembly, taken = built(pressed(PRESSED / 40.0)), list[int]()
-    watched = Watcher(lambda stepper, _: taken.append(stepper.newton.iterations))
+    assembly, iterations = built(pressed(PRESSED / 40.0)), list[int]()
+    watched = Watcher(lambda stepper, _: iterations.append(stepper.newton.iterations))
     run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), watched, Timer.new())
     assert (watched.settlings, watched.relaxations) == (0, 0)
-    assert taken[-1] < 300
+    assert iterations[-1] < 300
 
 
 @pytest.mark.parametrize("law", [ELASTIC, CLAY], ids=["elastic", "clay"])
@@ -203,27 +203,27 @@ def moved(name: str, start: list[float], end: list[float]) -> Mapping:
 
 def test_a_riser_lifted_off_the_soil_comes_to_rest_in_its_trough(tmp_path: Path) -> None:
     run(scene_from_mapping(lifted_and_set_down()), tmp_path)
-    found = Run(tmp_path)
-    for stage in found.summary["stages"]:
+    results = Run(tmp_path)
+    for stage in results.summary["stages"]:
         assert (stage["method"], stage["relaxations"], stage["step_cuts"]) == ("newton", 0, 0)
-    laid, lifted, again = found["contact_force_sum"]
+    laid, lifted, again = results["contact_force_sum"]
     assert np.abs(lifted).max() == 0.0
     assert again[2] == pytest.approx(laid[2], rel=2e-3)
-    borne = found["start_force"] + found["end_force"] + found["contact_force_sum"]
+    borne = results["start_force"] + results["end_force"] + results["contact_force_sum"]
     assert np.ptp(borne[:, 2]) < 1e-4 * borne[0, 2], "the weight, within what areas change by in a step"
-    trough = np.nanmax(found["soil_settlement"], axis=1)
+    trough = np.nanmax(results["soil_settlement"], axis=1)
     assert 0.2 * trough[0] < trough[1] < 0.5 * trough[0]
     assert trough[0] < trough[2] < 1.1 * trough[0]
 
 
 def forces(scene: Mapping) -> Array:
     """What the soil bears [N], step by step of the only stage."""
-    assembly, found = built(scene), list[float]()
+    assembly, values = built(scene), list[float]()
     contact = soil_under(assembly).contact
     assert contact is not None
     stage: Stage = assembly.scene.stages[0]
-    take(assembly, stage, watch=lambda _, step: found.append(-float(contact.force_on_soil(step.solution.state)[2])))
-    return np.array(found)
+    take(assembly, stage, watch=lambda _, step: values.append(-float(contact.force_on_soil(step.solution.state)[2])))
+    return np.array(values)
 
 
 @pytest.mark.verify

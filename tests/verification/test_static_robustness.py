@@ -78,24 +78,24 @@ class Case:
         return Run(folder)
 
 
-def require_balance(found: Run, weight: float) -> None:
-    total = found["start_force"][-1] + found["end_force"][-1] + found["contact_force_sum"][-1]
-    assert np.abs(total - [0.0, 0.0, weight]).max() < 1e-8 * max(weight, np.abs(found["end_force"][-1]).max())
+def require_balance(run: Run, weight: float) -> None:
+    total = run["start_force"][-1] + run["end_force"][-1] + run["contact_force_sum"][-1]
+    assert np.abs(total - [0.0, 0.0, weight]).max() < 1e-8 * max(weight, np.abs(run["end_force"][-1]).max())
 
 
 def check(case: Case, folder: Path) -> str:
     """Solve, judge, and tell the method."""
     try:
-        found = case.solved(folder)
+        run = case.solved(folder)
     except SolveError as err:
         too_long = str(err).startswith("the riser is slack")
         if not too_long or (case.bends_finely and not case.may_fold):
             raise
         return "told"
-    require_balance(found, W * case.length * DISTANCE)
-    if "laying" in found.summary:
+    require_balance(run, W * case.length * DISTANCE)
+    if "laying" in run.summary:
         return "laid"
-    method: str = found.summary["stages"][0]["method"]
+    method: str = run.summary["stages"][0]["method"]
     assert method == "newton" or case.ground == "rigid", "a catenary under tension is near enough, but for a hard floor"
     return method
 
@@ -146,14 +146,14 @@ def test_all(length: float, end: str, tmp_path: Path) -> None:
 def test_a_current_leads_from_any_start_to_the_same_state(profile: str, tmp_path: Path) -> None:
     """From straight in two stages and from the catenary at once; in the plane, and far out of it."""
     changes = (f"water.current={{profile: {profile}}}", "line_types.flexible.GJ=2.0e4", "solver.tolerance=1e-10")
-    found = []
+    positions = []
     for name in ("catenary-three-stages.yaml", "catenary.yaml"):
         scene = read_scene(SCENES / name, changes)
         statics = tuple(stage for stage in scene.stages if stage.kind == "static")
         run(scene.model_copy(update={"stages": statics}), tmp_path / name)
-        found.append(Run(tmp_path / name))
-    by_stages, at_once = (done["end_force"][-1] for done in found)
+        positions.append(Run(tmp_path / name))
+    by_stages, at_once = (done["end_force"][-1] for done in positions)
     assert by_stages == pytest.approx(at_once, rel=1e-6)
     assert by_stages[0] < 0.0, "the current carries the riser past its end"
-    assert found[0].summary["stages"][0]["method"] == "relaxation"
-    assert found[1].summary["stages"][0]["method"] == "load steps"
+    assert positions[0].summary["stages"][0]["method"] == "relaxation"
+    assert positions[1].summary["stages"][0]["method"] == "load steps"

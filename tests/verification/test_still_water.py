@@ -38,7 +38,7 @@ def test_a_lying_pipe_falls_by_the_hyperbolic_tangent(dimension: int) -> None:
     final = np.sqrt(WEIGHT / (0.5 * RHO * D * CD))
     time = mass * final / WEIGHT
     coarse, fine = (fallen(dt, dimension) for dt in (0.04, 0.02))
-    heights = [np.array([x[:, 2].mean() for x in reported.position]) for reported in (coarse, fine)]
+    heights = [np.array([x[:, 2].mean() for x in history.position]) for history in (coarse, fine)]
     exact = -final * time * np.log(np.cosh(np.array(coarse.t) / time))
     errors = [np.abs(h - exact).max() / np.abs(exact).max() for h in (heights[0], heights[1][1::2])]
     assert errors[1] < 5e-5
@@ -91,8 +91,8 @@ def first_mode(t: Array, count: int = 10) -> Array:
         return np.concatenate([v, -((n * OMEGA) ** 2) * q - drag])
 
     start = FIRST / n**3
-    found = solve_ivp(rates, (0.0, t[-1]), np.concatenate([start, 0.0 * start]), t_eval=t, rtol=1e-8, atol=1e-12)
-    return np.asarray(found.y[0])
+    solution = solve_ivp(rates, (0.0, t[-1]), np.concatenate([start, 0.0 * start]), t_eval=t, rtol=1e-8, atol=1e-12)
+    return np.asarray(solution.y[0])
 
 
 def test_a_string_dies_away_by_quadratic_drag() -> None:
@@ -103,9 +103,9 @@ def test_a_string_dies_away_by_quadratic_drag() -> None:
     """
     coarse, fine = string(160), string(320)[1::2]
     exact = first_mode(np.arange(1, coarse.size + 1) * 2.0 * np.pi / OMEGA / 160)
-    found = (4.0 * fine - coarse) / 3.0
-    assert found == pytest.approx(exact, abs=1e-4 * FIRST)
+    extrapolated = (4.0 * fine - coarse) / 3.0
+    assert extrapolated == pytest.approx(exact, abs=1e-4 * FIRST)
     law = 32.0 * RHO * D * STRING_DRAG / (9.0 * np.pi * STRING_MASS)
-    beyond = np.diff(1.0 / np.array([FIRST, *found[159::160]])) / law - 1.0
+    beyond = np.diff(1.0 / np.array([FIRST, *extrapolated[159::160]])) / law - 1.0
     assert np.all(np.diff(beyond) < 0.0)
     assert 0.0 < beyond[-1] < 0.01

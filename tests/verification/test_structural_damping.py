@@ -59,9 +59,9 @@ def damping_of(series: Array, dt: float) -> tuple[float, float]:
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_ratio_holds_at_its_frequency_and_grows_with_it(dimension: int) -> None:
     omega = [closed_form(n, 0.0) for n in (1, 2, 3)]
-    found = [damping_of(q, DT) for q in modes(plucked(dimension, 0.0, omega[0] / (2.0 * np.pi)))]
-    assert [w for w, _ in found] == pytest.approx(omega, rel=1e-4)
-    assert [ratio for _, ratio in found] == pytest.approx([RATIO, 4.0 * RATIO, 9.0 * RATIO], rel=2e-4)
+    ratios = [damping_of(q, DT) for q in modes(plucked(dimension, 0.0, omega[0] / (2.0 * np.pi)))]
+    assert [w for w, _ in ratios] == pytest.approx(omega, rel=1e-4)
+    assert [ratio for _, ratio in ratios] == pytest.approx([RATIO, 4.0 * RATIO, 9.0 * RATIO], rel=2e-4)
 
 
 def test_logarithmic_decrement_as_the_step_shrinks() -> None:
@@ -110,10 +110,10 @@ def swinging(dt: float, dimension: int, **damping: Any) -> Mapping:
 def test_energy_balance_closes_with_damping(dimension: int) -> None:
     given, gaps = {"damping": {"ratio": 0.05, "frequency": 1.0}}, []
     for dt in (0.01, 0.005):
-        reported = stage_histories(swinging(dt, dimension, **given))[-1]
-        stored, turned = np.array(reported.energy), np.cumsum(reported.work)
+        history = stage_histories(swinging(dt, dimension, **given))[-1]
+        stored, turned = np.array(history.energy), np.cumsum(history.work)
         gaps.append(np.abs(stored - turned - (stored[0] - turned[0])).max())
-    lost = stage_histories(swinging(0.01, dimension))[-1].energy[-1] - reported.energy[-1]
+    lost = stage_histories(swinging(0.01, dimension))[-1].energy[-1] - history.energy[-1]
     assert lost > 25.0
     assert gaps[1] < 2e-2 * lost
     assert gaps[0] / gaps[1] > 3.5

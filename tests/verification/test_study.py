@@ -34,8 +34,8 @@ def test_references_hold_what_a_much_finer_run_finds(tmp_path: Path) -> None:
         reached = made.reaching(target)
         assert reached is not None
         true = {
-            key: abs(fine.key_results[key].value - found.value) / quantities[key].reference.scale
-            for key, found in reached.key_results.items()
+            key: abs(fine.key_results[key].value - result.value) / quantities[key].reference.scale
+            for key, result in reached.key_results.items()
         }
         print(
             f"{target:.1%} by {made.refinements.in_words(reached.factors)}: {max(true.values()):.4%} off the fine run"

@@ -71,16 +71,16 @@ def test_coarse_cells_settle_less_as_the_warning_says(cells: int) -> None:
     unit = case.q / (np.pi * case.modulus)
     constant = fine.indentation * np.pi * fine.modulus / fine.q - 2.0 * np.log(1.0 / fine.half_width)
     missing = unit * (2.0 * np.log(1.0 / case.half_width) + constant) - case.indentation
-    reported = 2.0 * unit * np.log(LIKE_CONTACT * D / cells / (2.0 * case.half_width))
-    assert reported == pytest.approx(missing, rel=0.3)
+    predicted = 2.0 * unit * np.log(LIKE_CONTACT * D / cells / (2.0 * case.half_width))
+    assert predicted == pytest.approx(missing, rel=0.3)
 
 
 def test_wide_cells_are_reported() -> None:
     scene = touchdown(LAY, su=6000.0)
     at_nodes = scene | {"contact": {"method": "node"}}
-    assert not any("size_at_riser" in reported for reported in ground_warnings(built(at_nodes).riser))
-    reported = line_with(ground_warnings(built(scene).riser), "soil.mesh.size_at_riser", "fine cells", "take at most")
-    assert re.search(r"touches .* \d\S* mm.* \d\S* mm ", reported)
+    assert not any("size_at_riser" in warning for warning in ground_warnings(built(at_nodes).riser))
+    warning = line_with(ground_warnings(built(scene).riser), "soil.mesh.size_at_riser", "fine cells", "take at most")
+    assert re.search(r"touches .* \d\S* mm.* \d\S* mm ", warning)
 
 
 def test_contact_at_nodes_has_no_limit() -> None:

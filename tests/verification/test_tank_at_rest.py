@@ -27,8 +27,8 @@ def springs(k: float, start: Rigid | None = None) -> AtRest:
     return Winkler(hose(), k, 0.1 * WEIGHT / k, start).at_rest
 
 
-def rest(found: AtRest) -> Rest:
-    return Rest(*(getattr(found, each.name) for each in fields(Rest)))
+def rest(state: AtRest) -> Rest:
+    return Rest(*(getattr(state, each.name) for each in fields(Rest)))
 
 
 def test_rigid_reference_balances_moments() -> None:
@@ -39,11 +39,11 @@ def test_rigid_reference_balances_moments() -> None:
     V = given.w * (given.length - rigid.s0) - rigid.R
     x0 = rigid.s0 * (1.0 + rigid.H / given.EA)
     xi, weight = np.polynomial.legendre.leggauss(60)
-    x = rigid.found.sol(0.5 + 0.5 * xi)[0]
+    x = rigid.solution.sol(0.5 + 0.5 * xi)[0]
     hanging = given.w * (given.length - rigid.s0)
     pull = rigid.H * given.top[1] - V * (given.top[0] - x0) + hanging * 0.5 * float(weight @ (x - x0))
     assert abs(pull) < 1e-7 * V * given.top[0]
-    kink = float(rigid.found.sol(1e-6)[3]) / (1e-6 * (given.length - rigid.s0))
+    kink = float(rigid.solution.sol(1e-6)[3]) / (1e-6 * (given.length - rigid.s0))
     assert kink == pytest.approx(rigid.R * (1.0 + rigid.H / given.EA), rel=1e-4)
 
 
@@ -78,15 +78,15 @@ def test_line_contact_finds_the_springs(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("angle", ANGLES)
 def test_stiff_line_contact_finds_the_rigid_floor(angle: float, tmp_path: Path) -> None:
-    found = at_rest(tmp_path, 400, 1e9, "line", angle)
-    assert np.abs(found.errors(reference()[0][angle])).max() < 1e-4
+    state = at_rest(tmp_path, 400, 1e9, "line", angle)
+    assert np.abs(state.errors(reference()[0][angle])).max() < 1e-4
 
 
 def test_corner_of_a_millimetre_lifts_the_hose() -> None:
     """A rounding s far beyond the depth at rest holds it at a height of s - 2 sqrt(s w/k): all heights are less."""
     k, s = 1e9, 1e-3
     lifted = Winkler(hose(), k, s)
-    height = lifted.found.sol(10.0)[1] * lifted.unit
+    height = lifted.solution.sol(10.0)[1] * lifted.unit
     assert height == pytest.approx(s - 2.0 * np.sqrt(s * WEIGHT / k), rel=1e-6)
     slackened = lifted.H / Rigid(hose()).H - 1.0
     assert slackened == pytest.approx(-7.5e-4, abs=2e-5)

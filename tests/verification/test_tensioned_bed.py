@@ -62,7 +62,7 @@ def lying(k: float, length: float, size: float, method: str, *loads: Any, tensio
         gravity=9.81,
         water={"density": 1000.0},
     )
-    assembly, found = built(scene), list[Found]()
+    assembly, results = built(scene), list[Found]()
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
         riser, line = riser_record(assembly.riser, stepper), assembly.riser.line
@@ -70,10 +70,10 @@ def lying(k: float, length: float, size: float, method: str, *loads: Any, tensio
         tangent = line.trial(stepper.now).turn.tangent
         slope = np.append(tangent[:, 0, 1] / tangent[:, 0, 0], tangent[-1, 1, 1] / tangent[-1, 1, 0])
         touchdown = assembly.riser.seabed.touchdown_arc(stepper.now)
-        found.append(Found(line.arc, riser.position[:, 2], slope, riser.bending_moment, touchdown))
+        results.append(Found(line.arc, riser.position[:, 2], slope, riser.bending_moment, touchdown))
 
     run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(watch), Timer.new())
-    return found[-1]
+    return results[-1]
 
 
 def roots(k: float, tension: float = H) -> Array:
@@ -121,13 +121,13 @@ def found_layer(K: float, method: str = "line") -> Layer:
     hanging = 14.0 + K**-0.5  # m; what the free end does has died out at the touchdown point
     length, size = 24.0 / decay + 3.0 + hanging, 0.1 * min(1.0, 2.0 * K**-0.25)
     lift = {"at": "end", "force": [0.0, 0.0, WEIGHT * hanging]}
-    found = lying(K * EI, length, size, method, lift)
-    height = CubicSpline(found.arc, found.height)
-    last = int(np.flatnonzero(found.height < 0.0)[-1])
-    end = float(brentq(height, found.arc[last], found.arc[last + 1]))
-    moment, slope = CubicSpline(found.arc, found.moment)(end), CubicSpline(found.arc, found.slope)(end)
+    result = lying(K * EI, length, size, method, lift)
+    height = CubicSpline(result.arc, result.height)
+    last = int(np.flatnonzero(result.height < 0.0)[-1])
+    end = float(brentq(height, result.arc[last], result.arc[last + 1]))
+    moment, slope = CubicSpline(result.arc, result.moment)(end), CubicSpline(result.arc, result.slope)(end)
     catenary = length - hanging
-    return Layer(float(moment) / WEIGHT, float(slope) * H / WEIGHT, catenary - end, catenary - found.touchdown)
+    return Layer(float(moment) / WEIGHT, float(slope) * H / WEIGHT, catenary - end, catenary - result.touchdown)
 
 
 @pytest.mark.parametrize("K", [1.5, 10.0, 1e4, 1e6])
@@ -143,22 +143,22 @@ def test_closed_form_of_the_layer(K: float) -> None:
 @pytest.mark.parametrize("K", DECADES)
 def test_layer_over_six_decades(K: float) -> None:
     """At K = 1 the touchdown point goes as the root of 1 - 1/K, so it tells every small error there."""
-    found, exact = found_layer(K), layer(K)
-    assert found.moment == pytest.approx(exact.moment, rel=1e-3)
-    assert found.slope == pytest.approx(exact.slope, rel=1e-3)
-    assert found.end == pytest.approx(exact.end, abs=1e-3)
+    length, exact = found_layer(K), layer(K)
+    assert length.moment == pytest.approx(exact.moment, rel=1e-3)
+    assert length.slope == pytest.approx(exact.slope, rel=1e-3)
+    assert length.end == pytest.approx(exact.end, abs=1e-3)
     near = 0.1 if K == 1.0 else 1e-2 if K < 1.0 else 1e-3
-    assert found.touchdown == pytest.approx(exact.touchdown, abs=near)
+    assert length.touchdown == pytest.approx(exact.touchdown, abs=near)
 
 
 @pytest.mark.verify
 @pytest.mark.parametrize("K", DECADES)
 def test_node_contact_over_six_decades(K: float) -> None:
     """On the same elements; up to a thousand times less exact."""
-    found, exact = found_layer(K, "node"), layer(K)
-    assert found.moment == pytest.approx(exact.moment, rel=4e-3)
-    assert found.slope == pytest.approx(exact.slope, rel=4e-3)
-    assert found.end == pytest.approx(exact.end, abs=2e-3)
+    length, exact = found_layer(K, "node"), layer(K)
+    assert length.moment == pytest.approx(exact.moment, rel=4e-3)
+    assert length.slope == pytest.approx(exact.slope, rel=4e-3)
+    assert length.end == pytest.approx(exact.end, abs=2e-3)
 
 
 @pytest.mark.parametrize("tension", [0.3 * H, H])
@@ -169,9 +169,9 @@ def test_point_load_on_a_long_beam(tension: float, method: str, near: float) -> 
     """
     k, P, length = EI, WEIGHT, 40.0
     load = {"at": 0.5 * length, "force": [0.0, 0.0, -P]}
-    found = lying(k, length, 0.1, method, load, tension=tension)
-    middle = found.arc.size // 2
+    result = lying(k, length, 0.1, method, load, tension=tension)
+    middle = result.arc.size // 2
     total = float(np.sqrt(tension / EI + 2.0 * np.sqrt(k / EI)))
     assert total == pytest.approx(float(roots(k, tension).sum().real))
-    assert -found.height[middle] - WEIGHT / k == pytest.approx(P / (2.0 * np.sqrt(EI * k) * total), rel=near)
-    assert found.moment[middle] == pytest.approx(P / (2.0 * total), rel=near)
+    assert -result.height[middle] - WEIGHT / k == pytest.approx(P / (2.0 * np.sqrt(EI * k) * total), rel=near)
+    assert result.moment[middle] == pytest.approx(P / (2.0 * total), rel=near)

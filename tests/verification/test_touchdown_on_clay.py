@@ -61,7 +61,7 @@ def laid(seabed: Mapping, size: float, *stages: Mapping, **more: Mapping) -> lis
         dimension=2,
         **more,
     )
-    assembly, found = built(scene), list[Laid]()
+    assembly, states = built(scene), list[Laid]()
     seabed_contact = assembly.riser.seabed
     assert seabed_contact is not None
     law = seabed_contact.law
@@ -72,30 +72,30 @@ def laid(seabed: Mapping, size: float, *stages: Mapping, **more: Mapping) -> lis
         penetration = (-clearance - law.start).reshape(seabed_contact.share.shape)
         first = law.update(penetration, law.initial_history(penetration.shape)).force
         at = (x.ravel() for x in (arc, seabed_contact.share, force, first))
-        found.append(Laid(seabed_contact.touchdown_arc(stepper.now), *at))
+        states.append(Laid(seabed_contact.touchdown_arc(stepper.now), *at))
 
     before = State.at_rest(0.0, assembly.size)
     for stage in assembly.scene.stages:
         before = run_stage(assembly, stage, before, Watcher(watch), Timer.new())
-    return found
+    return states
 
 
 @pytest.mark.parametrize("seabed", SEABEDS)
 def test_converges_with_the_elements(seabed: str) -> None:
     """To the end of the rigid contact with the resultant and moment of all forces, where the weight is what rests."""
     coarse, fine = (laid(SEABEDS[seabed], size)[-1] for size in (5.0, 1.25))
-    for found in (coarse, fine):
-        exact, _ = equivalent_point(found.arc, found.share, found.force, PIPE["submerged_weight"])
-        assert found.touchdown == pytest.approx(exact, abs=1e-4)
+    for state in (coarse, fine):
+        exact, _ = equivalent_point(state.arc, state.share, state.force, PIPE["submerged_weight"])
+        assert state.touchdown == pytest.approx(exact, abs=1e-4)
     assert coarse.touchdown == pytest.approx(fine.touchdown, abs=0.01 if seabed == "springs" else 0.05)
 
 
 @pytest.mark.parametrize("seabed", ["R&Q", "A&B"])
 def test_clay_never_touched_answers_as_to_a_first_penetration(seabed: str) -> None:
     """In one step, also where dynamic relaxation found it: on its way it left no trace."""
-    found = laid(SEABEDS[seabed], 2.5)[-1]
-    assert np.count_nonzero(found.force) > 1000
-    assert found.force == pytest.approx(found.first, rel=1e-12)
+    state = laid(SEABEDS[seabed], 2.5)[-1]
+    assert np.count_nonzero(state.force) > 1000
+    assert state.force == pytest.approx(state.first, rel=1e-12)
 
 
 def test_clay_as_elastic_as_springs_bears_the_riser_as_they_do() -> None:
@@ -114,8 +114,8 @@ def test_moves_as_smoothly_as_the_end(seabed: str) -> None:
     far: list[float] = []
     for steps in (20, 40):
         stages = [static(name, move={"end": [x, 0.0, 1500.0]}) for name, x in (("out", 1510.0), ("in", 1500.0))]
-        found = laid(SEABEDS[seabed], 5.0, *stages, solver={"load_steps": steps})
-        far.append(float(np.abs(np.diff([each.touchdown for each in found])).max()))
+        states = laid(SEABEDS[seabed], 5.0, *stages, solver={"load_steps": steps})
+        far.append(float(np.abs(np.diff([each.touchdown for each in states])).max()))
     assert far[0] > 0.1
     assert far[1] < 0.6 * far[0]
 
@@ -131,7 +131,7 @@ def test_swinging_hose_moves_it_smoothly(law: str, tmp_path: Path) -> None:
         for step in ("0.05", "0.025")
         for every in [(f"stages.1.time_step={step}", f"output.interval={step}")]
     ]
-    coarse, fine = (float(np.abs(np.diff(found["touchdown_arc"])).max()) for found in by_step)
+    coarse, fine = (float(np.abs(np.diff(run["touchdown_arc"])).max()) for run in by_step)
     assert np.ptp(by_step[0]["touchdown_arc"]) > 1.0
     assert coarse < 0.03
     assert fine < 0.65 * coarse

@@ -93,18 +93,18 @@ def test_least_tension_and_bend_radius_are_those_of_the_fields(sag: Run) -> None
 
 def test_the_warning_tells_where_and_when_the_pipe_is_bent_most(sag: Run) -> None:
     lay, heave = sag.summary["stages"]
-    used, found = sag["bend_utilisation"], heave["extremes"]["max_bend_utilisation"]
+    used, largest = sag["bend_utilisation"], heave["extremes"]["max_bend_utilisation"]
     row, node = np.unravel_index(used.argmax(), used.shape)
     assert lay["warnings"] == []
-    assert 1.0 < used.max() <= found["max"] < 1.01 * used.max()
-    assert found["t_max"] == sag.time[row]
-    reported = re.fullmatch(
-        rf"the pipe is bent beyond its min_bend_radius: {found['max']:.4g} times the limit at arc (\S+) m and "
-        rf"{sag.time[row]:.5g} s, where the bend radius is {ALLOWED / found['max']:.4g} m",
+    assert 1.0 < used.max() <= largest["max"] < 1.01 * used.max()
+    assert largest["t_max"] == sag.time[row]
+    match = re.fullmatch(
+        rf"the pipe is bent beyond its min_bend_radius: {largest['max']:.4g} times the limit at arc (\S+) m and "
+        rf"{sag.time[row]:.5g} s, where the bend radius is {ALLOWED / largest['max']:.4g} m",
         heave["warnings"][0],
     )
-    assert reported is not None
-    assert abs(float(reported[1]) - sag.arc[node]) < 0.75
+    assert match is not None
+    assert abs(float(match[1]) - sag.arc[node]) < 0.75
 
 
 def test_units(sag: Run) -> None:
@@ -134,8 +134,8 @@ def test_where_line_types_meet_the_one_nearer_to_its_limit_counts(tmp_path: Path
     scene["riser"]["segments"].insert(0, {"line_type": "stiff", "length": 2.0, "elements": 4})
     scene["riser"]["initial"] = "straight"
     run(scene_from_mapping(scene | {"dimension": 2, "gravity": 9.81}), tmp_path / "soft_governs")
-    seen = Run(tmp_path / "soft_governs")
-    M, used = seen["bending_moment"][-1], seen["bend_utilisation"][-1]
+    results = Run(tmp_path / "soft_governs")
+    M, used = results["bending_moment"][-1], results["bend_utilisation"][-1]
     assert used[4] == pytest.approx(M[4] * 3.0 / EI, rel=1e-9)
     assert used[3] == pytest.approx(M[3] * 10.0 / (4.0 * EI), rel=1e-9)
 
@@ -144,15 +144,15 @@ def test_embedment_in_soil_counts_from_where_it_lay(tmp_path: Path) -> None:
     scene = touchdown(LAY, su=1000.0)
     scene["soil"]["strain"] = "small"
     run(scene_from_mapping(scene), tmp_path)
-    seen = Run(tmp_path)
-    settlement = -seen.soil_frame().fields["displacement"][:, 2].min()
-    on_soil = (seen["position"][-1, :, 0] > 2.5) & (seen["position"][-1, :, 0] < 8.5)
-    embedment, penetration = seen["embedment"][-1, on_soil], seen["penetration"][-1, on_soil]
+    results = Run(tmp_path)
+    settlement = -results.soil_frame().fields["displacement"][:, 2].min()
+    on_soil = (results["position"][-1, :, 0] > 2.5) & (results["position"][-1, :, 0] < 8.5)
+    embedment, penetration = results["embedment"][-1, on_soil], results["penetration"][-1, on_soil]
     assert settlement > 1e-3
     assert penetration.max() < 0.3 * settlement
     assert embedment.max() == pytest.approx(settlement, rel=0.2)
-    assert seen["touchdown_points"][-1] == 1
-    tell_of_the_trough(seen)
+    assert results["touchdown_points"][-1] == 1
+    tell_of_the_trough(results)
 
 
 @pytest.mark.verify
@@ -167,30 +167,30 @@ def test_the_soil_gets_what_the_ends_do_not_bear(tmp_path: Path) -> None:
     scene["soil"]["block"]["x"] = [-1.0, 9.0]
     scene["contact"] = {"friction": {"axial": 0.4, "lateral": 0.6}}
     run(scene_from_mapping(scene), tmp_path)
-    seen = Run(tmp_path)
-    length = np.diff(seen.arc, prepend=seen.arc[0], append=seen.arc[-1])
-    on_soil = 0.5 * (length[:-1] + length[1:]) @ seen["force_on_soil"][-1]
-    ends = (seen["start_force"] + seen["end_force"])[-1]
+    results = Run(tmp_path)
+    length = np.diff(results.arc, prepend=results.arc[0], append=results.arc[-1])
+    on_soil = 0.5 * (length[:-1] + length[1:]) @ results["force_on_soil"][-1]
+    ends = (results["start_force"] + results["end_force"])[-1]
     assert ends[1] > 30.0
     np.testing.assert_allclose(on_soil[:2], ends[:2], atol=1e-4 * ends[1])
-    assert np.abs(seen["contact_force_sum"][-1, :2]).max() < 0.03 * ends[1]
+    assert np.abs(results["contact_force_sum"][-1, :2]).max() < 0.03 * ends[1]
 
 
-def tell_of_the_trough(seen: Run) -> None:
+def tell_of_the_trough(run: Run) -> None:
     """Along the riser where it touches the soil alone, and in the section at the touchdown point."""
-    sunk = seen["embedment"][-1] - seen["penetration"][-1]
-    alone = (seen["force_on_soil"][-1, :, 2] < 0.0) & (np.abs(seen["position"][-1, :, 0] - 5.0) < 2.5)
+    sunk = run["embedment"][-1] - run["penetration"][-1]
+    alone = (run["force_on_soil"][-1, :, 2] < 0.0) & (np.abs(run["position"][-1, :, 0] - 5.0) < 2.5)
     assert np.count_nonzero(alone) > 5
-    in_plane = np.linalg.norm(seen["force_on_soil"][-1, :, ::2], axis=1)  # the mesh's two halves are no mirror images
-    np.testing.assert_allclose(in_plane[alone], seen["contact_force"][-1, alone], rtol=1e-9)
-    touching = alone & (seen["penetration"][-1] > 0.0)  # a node has its share of what elements beside it press on
+    in_plane = np.linalg.norm(run["force_on_soil"][-1, :, ::2], axis=1)  # the mesh's two halves are no mirror images
+    np.testing.assert_allclose(in_plane[alone], run["contact_force"][-1, alone], rtol=1e-9)
+    touching = alone & (run["penetration"][-1] > 0.0)  # a node has its share of what elements beside it press on
     assert np.count_nonzero(touching) > 5
-    np.testing.assert_allclose(seen["soil_settlement"][-1, touching], sunk[touching], rtol=1e-9)
-    assert np.isnan(seen["soil_settlement"][-1, seen["position"][-1, :, 0] > 9.5]).all()
-    assert seen["section_arc"][-1, 0] == seen["touchdown_arc"][-1]
-    np.testing.assert_array_equal(seen["section_position"][-1, 0], seen["touchdown_position"][-1])
-    np.testing.assert_allclose(seen["section_direction"][-1, 0], [0.0, 1.0, 0.0], atol=1e-12)
-    trough, offset = seen["settlement_across"][-1, 0], seen["offset"]
+    np.testing.assert_allclose(run["soil_settlement"][-1, touching], sunk[touching], rtol=1e-9)
+    assert np.isnan(run["soil_settlement"][-1, run["position"][-1, :, 0] > 9.5]).all()
+    assert run["section_arc"][-1, 0] == run["touchdown_arc"][-1]
+    np.testing.assert_array_equal(run["section_position"][-1, 0], run["touchdown_position"][-1])
+    np.testing.assert_allclose(run["section_direction"][-1, 0], [0.0, 1.0, 0.0], atol=1e-12)
+    trough, offset = run["settlement_across"][-1, 0], run["offset"]
     assert (offset[0], offset[-1], len(offset)) == pytest.approx((-0.9, 0.9, 61))
     assert trough[30] == pytest.approx(trough.max(), rel=1e-6)
     np.testing.assert_allclose(trough, trough[::-1], rtol=1e-6, atol=1e-9)

@@ -69,7 +69,7 @@ def hose(s: float, seabed: str, dimension: int, time_step: float | str) -> Mappi
     )
 
 
-def reported(s: float, seabed: str, dimension: int = 2, time_step: float | str = 0.1) -> Array:
+def figures_of(s: float, seabed: str, dimension: int = 2, time_step: float | str = 0.1) -> Array:
     """By step, without units: time; H and top tension, largest moment, touchdown arc, lowest node; iterations."""
     return reported_of(hose(s, seabed, dimension, time_step), s)
 
@@ -93,26 +93,26 @@ def reported_of(scene: Mapping, s: float) -> Array:
 
 @cache
 def usual(seabed: str, dimension: int = 2, time_step: float | str = 0.1) -> Array:
-    return reported(1.0, seabed, dimension, time_step)
+    return figures_of(1.0, seabed, dimension, time_step)
 
 
 @pytest.mark.parametrize("s", SCALES)
 @pytest.mark.parametrize("seabed", SEABEDS)
 def test_same_hose_in_any_size(seabed: str, s: float) -> None:
     """To round-off, as each iteration is the same."""
-    np.testing.assert_allclose(reported(s, seabed), usual(seabed), rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(figures_of(s, seabed), usual(seabed), rtol=1e-6, atol=1e-9)
 
 
 @pytest.mark.verify
 @pytest.mark.parametrize("s", SCALES)
 def test_same_hose_in_space(s: float) -> None:
-    np.testing.assert_allclose(reported(s, "rigid", dimension=3), usual("rigid", 3), rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(figures_of(s, "rigid", dimension=3), usual("rigid", 3), rtol=1e-6, atol=1e-9)
 
 
 @pytest.mark.parametrize("s", SCALES)
 def test_same_automatic_steps(s: float) -> None:
     np.testing.assert_allclose(
-        reported(s, "springs", time_step="auto"), usual("springs", 2, "auto"), rtol=1e-5, atol=1e-9
+        figures_of(s, "springs", time_step="auto"), usual("springs", 2, "auto"), rtol=1e-5, atol=1e-9
     )
 
 
@@ -140,8 +140,8 @@ def test_same_riser_on_soil(kind: str, s: float) -> None:
     """Cells, too: gmsh works in lengths of order one. Of hexahedra on clay with, of tetrahedra without strength at the
     seabed.
     """
-    found, usual = (rows[-2:, :-1] for rows in (reported_of(on_soil(s, kind), s), usual_on_soil(kind)))
-    np.testing.assert_allclose(found, usual, rtol=1e-6, atol=1e-9)
+    scaled, usual = (rows[-2:, :-1] for rows in (reported_of(on_soil(s, kind), s), usual_on_soil(kind)))
+    np.testing.assert_allclose(scaled, usual, rtol=1e-6, atol=1e-9)
 
 
 @cache

@@ -45,16 +45,16 @@ def shaken(scene: Mapping) -> Shaken:
     assembly = built_of(scene_from_mapping(scene))
     line, (rest, flow) = assembly.riser.line, assembly.scene.stages
     assert line.dimension == 3  # though all that is given lies in a plane
-    before, found = take(assembly, rest), Shaken(np.zeros(0), np.zeros(0), [])
+    before, motion = take(assembly, rest), Shaken(np.zeros(0), np.zeros(0), [])
     t, x = list[float](), list[Array]()
 
     def watch(system: System, step: AcceptedStep) -> None:
         t.append(step.t)
         x.append(line.to_global(line.trial(step.solution.state).x))
-        found.turned.append(step.turned)
+        motion.turned.append(step.turned)
 
     take(assembly, flow, before, watch)
-    return Shaken(np.array(t), np.array(x), found.turned)
+    return Shaken(np.array(t), np.array(x), motion.turned)
 
 
 # A rigid cylinder between two light cables under tension, which are its springs
@@ -90,9 +90,9 @@ def mounted(reduced: float, steps: int = 60, periods: int = 60, in_line: float =
     return U, shaken(scene)
 
 
-def oscillation(found: Shaken, axis: int = 1) -> tuple[float, float]:
+def oscillation(motion: Shaken, axis: int = 1) -> tuple[float, float]:
     """Frequency [Hz] and amplitude [m] of the middle along an axis: across the flow, or 0 in line with it."""
-    t, y = found.t[found.later], found.x[found.later, found.x.shape[1] // 2, axis]
+    t, y = motion.t[motion.later], motion.x[motion.later, motion.x.shape[1] // 2, axis]
     y = y - y.mean()
     (up,) = np.nonzero((y[:-1] < 0.0) & (y[1:] >= 0.0))
     cross = t[up] - y[up] * (t[up + 1] - t[up]) / (y[up + 1] - y[up])
@@ -105,16 +105,16 @@ def test_a_cylinder_locks_in_at_nearly_a_diameter(reduced: float) -> None:
     mean, f D/mean(w) = f0 + df sin(theta), the velocity's amplitude is U Cv/Cd cos(theta). This leaves
     out that the cylinder moves in line, too, at twice the frequency by a tenth of the flow's speed.
     """
-    U, found = mounted(reduced)
-    f, A = oscillation(found)
+    U, motion = mounted(reduced)
+    f, A = oscillation(motion)
     assert 0.7 < A / D < 1.0
     assert 1.0 < f / NATURAL < 1.1
     speed = 2.0 * math.pi * f * A
     past = float(np.hypot(U, speed * np.cos(np.linspace(0.0, 2.0 * math.pi, 400, endpoint=False))).mean())
     lag = (f * D / past - MIDDLE) / WIDTH
     assert speed == pytest.approx(U * CV / CD * math.sqrt(1.0 - lag**2), rel=0.05)
-    assert found.work("vortices") == pytest.approx(-found.work("morison"), rel=2e-3)
-    assert found.work("vortices") > 0.0
+    assert motion.work("vortices") == pytest.approx(-motion.work("morison"), rel=2e-3)
+    assert motion.work("vortices") > 0.0
 
 
 def test_half_the_step_gives_the_same() -> None:
@@ -132,13 +132,13 @@ def test_in_line_a_cylinder_locks_in_where_drag_takes_what_vortices_give(reduced
     the drag rho D Cd U v^2/2 by the velocity's amplitude v, which is small beside U: so v = U C cos(theta)/(2 Cd).
     """
     C = 0.2
-    U, found = mounted(reduced, in_line=C)
-    f, A = oscillation(found, axis=0)
+    U, motion = mounted(reduced, in_line=C)
+    f, A = oscillation(motion, axis=0)
     lag = (f * D / U - 2.0 * MIDDLE) / (2.0 * WIDTH)
     assert abs(lag) < 0.5
     assert 2.0 * math.pi * f * A == pytest.approx(0.5 * U * C / CD * math.sqrt(1.0 - lag**2), rel=0.05)
-    assert np.abs(found.x[..., 1]).max() < 1e-6 * A
-    assert found.work("vortices in line") > 0.0
+    assert np.abs(motion.x[..., 1]).max() < 1e-6 * A
+    assert motion.work("vortices in line") > 0.0
 
 
 def test_in_line_nothing_locks_in_a_slow_flow() -> None:
@@ -175,12 +175,12 @@ def in_shear(elements: int = 40) -> Shaken:
     return shear_of(elements)
 
 
-def strongest(found: Shaken) -> tuple[float, float]:
+def strongest(motion: Shaken) -> tuple[float, float]:
     """Frequency [Hz] with the most energy across the flow, all nodes together; largest amplitude [m]."""
-    y = found.x[found.later, :, 1]
+    y = motion.x[motion.later, :, 1]
     y = y - y.mean(axis=0)
     power = (np.abs(np.fft.rfft(y * np.hanning(len(y))[:, None], axis=0)) ** 2).sum(axis=1)
-    frequency = np.fft.rfftfreq(len(y), found.t[1] - found.t[0])[power.argmax()]
+    frequency = np.fft.rfftfreq(len(y), motion.t[1] - motion.t[0])[power.argmax()]
     return float(frequency), math.sqrt(2.0) * float(y.std(axis=0).max())
 
 

@@ -82,8 +82,8 @@ def test_bending_about_both_axes_with_torsion() -> None:
     """Exerted by what is beyond: about y it pulls the upper side, about z the right one; torsion shears."""
     Mx, My, Mz = 2.0e4, 4.0e4, -3.0e4
     wall = settled(bent([Mx, My, Mz]))
-    for found, given in ((wall.torque, Mx), (wall.bending_moment_y, My), (wall.bending_moment_z, Mz)):
-        assert found == pytest.approx(np.full(5, given), rel=1e-6)
+    for computed, given in ((wall.torque, Mx), (wall.bending_moment_y, My), (wall.bending_moment_z, Mz)):
+        assert computed == pytest.approx(np.full(5, given), rel=1e-6)
     bending, axial, shear = 5.0e4 * 0.5 * OUTER / I, 1.0e5 / A, Mx * 0.5 * OUTER / (2.0 * I)
     assert wall.wall_bending_stress == pytest.approx(np.full(5, bending), rel=1e-6)
     assert wall.wall_axial_stress == pytest.approx(np.full(5, axial), rel=1e-6)
@@ -158,8 +158,8 @@ def test_the_stress_that_is_warned_of_is_that_of_the_weaker_steel(tmp_path: Path
     used, stress = done["stress_utilisation"][-1], done["wall_von_mises_stress"][-1]
     assert int(np.argmax(used)) == 4
     assert stress[4] > 1.1 * used[4] * 5.0e7
-    (reported,) = done.summary["stages"][0]["warnings"]
-    line_with([reported], "arc 20 m", "1 of the load", f"von Mises' stress is {used[4] * 5.0e7:.4g} Pa")
+    (warning,) = done.summary["stages"][0]["warnings"]
+    line_with([warning], "arc 20 m", "1 of the load", f"von Mises' stress is {used[4] * 5.0e7:.4g} Pa")
 
 
 def test_without_a_wall_nothing_of_it_is_recorded(tmp_path: Path) -> None:
@@ -177,7 +177,7 @@ def test_in_a_plane_torque_is_not_recorded(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "reported"),
+    ("change", "message"),
     [
         ({"wall": {"inner_diameter": 0.4}}, r"line_types.pipe.wall: .*must lie between two diameters.*0\.35 m.*0\.4 m"),
         ({"inner_diameter": 0.0}, "line_types.pipe.wall: .*needs an inner diameter"),
@@ -186,8 +186,8 @@ def test_in_a_plane_torque_is_not_recorded(tmp_path: Path) -> None:
         ({"max_tension": 0.0}, "line_types.pipe.max_tension: .*greater than 0"),
     ],
 )
-def test_what_is_refused(change: Mapping, reported: str) -> None:
-    with pytest.raises(SceneError, match=reported):
+def test_what_is_refused(change: Mapping, message: str) -> None:
+    with pytest.raises(SceneError, match=message):
         scene_from_mapping(hanging(STEEL | change))
 
 

@@ -58,11 +58,11 @@ def test_a_full_pipe_in_air_carries_its_contents_by_its_lower_end(dimension: int
 
 def test_the_foot_of_a_submerged_pipe_is_pressed_by_the_water() -> None:
     """T_w = -p_o A_o at a closed free end, whatever is above it; at the top the dry weight less that force."""
-    reported = settled(hanging(-10.0, water={"density": RHO, "surface_level": 0.0}))
-    foot = RHO * G * -reported.position[-1, 2] * A_OUT
-    assert reported.effective_tension[-1] == pytest.approx(0.0, abs=1e-6 * foot)
-    assert reported.wall_tension[-1] == pytest.approx(-foot, rel=1e-9)
-    assert reported.wall_tension[0] == pytest.approx(MASS * G * L - RHO * G * (10.0 + L) * A_OUT, rel=1e-9)
+    history = settled(hanging(-10.0, water={"density": RHO, "surface_level": 0.0}))
+    foot = RHO * G * -history.position[-1, 2] * A_OUT
+    assert history.effective_tension[-1] == pytest.approx(0.0, abs=1e-6 * foot)
+    assert history.wall_tension[-1] == pytest.approx(-foot, rel=1e-9)
+    assert history.wall_tension[0] == pytest.approx(MASS * G * L - RHO * G * (10.0 + L) * A_OUT, rel=1e-9)
 
 
 @pytest.mark.parametrize("given", [{"pipe_diameter": 0.25}, {"wall": {"outer_diameter": 0.25}}])
@@ -70,9 +70,9 @@ def test_a_coat_bears_the_water_on_itself(given: Mapping) -> None:
     """At the foot the pipe inside has the water's pressure on its own area, the coat on the rest."""
     scene = hanging(-10.0, water={"density": RHO, "surface_level": 0.0})
     scene["line_types"]["pipe"] = PIPE | given
-    reported = settled(scene)
-    pressure = -RHO * G * reported.position[:, 2]
-    pressed = reported.effective_tension - reported.wall_tension
+    history = settled(scene)
+    pressure = -RHO * G * history.position[:, 2]
+    pressed = history.effective_tension - history.wall_tension
     assert pressed == pytest.approx(pressure * 0.25 * np.pi * 0.25**2, rel=1e-9)
 
 
@@ -84,10 +84,10 @@ def test_the_level_of_the_contents_can_be_given() -> None:
 
 
 def test_above_the_water_nothing_presses_from_outside() -> None:
-    reported = settled(hanging(30.0, water={"density": RHO, "surface_level": 0.0}))
-    z = reported.position[:, 2]
-    assert np.array_equal(reported.wall_tension[z > 0.0], reported.effective_tension[z > 0.0])
-    pressed = reported.effective_tension - reported.wall_tension
+    history = settled(hanging(30.0, water={"density": RHO, "surface_level": 0.0}))
+    z = history.position[:, 2]
+    assert np.array_equal(history.wall_tension[z > 0.0], history.effective_tension[z > 0.0])
+    pressed = history.effective_tension - history.wall_tension
     assert pressed[z < 0.0] == pytest.approx(-RHO * G * z[z < 0.0] * A_OUT, rel=1e-9)
 
 
@@ -96,10 +96,10 @@ def test_at_a_joint_the_areas_are_the_means_of_both_sides() -> None:
     scene["line_types"]["thin"] = PIPE | {"inner_diameter": 0.1}
     half = {"length": 0.5 * L, "elements": 4}
     scene["riser"]["segments"] = [{"line_type": "pipe"} | half, {"line_type": "thin"} | half]
-    reported = settled(scene)
+    history = settled(scene)
     areas = np.r_[np.full(4, A_IN), 0.5 * (A_IN + 0.25 * A_IN), np.full(4, 0.25 * A_IN)]
-    pressure = 1.0e6 - OIL * G * reported.position[:, 2]
-    assert reported.wall_tension - reported.effective_tension == pytest.approx(pressure * areas, rel=1e-9)
+    pressure = 1.0e6 - OIL * G * history.position[:, 2]
+    assert history.wall_tension - history.effective_tension == pytest.approx(pressure * areas, rel=1e-9)
 
 
 SEA: Mapping = {"density": RHO, "surface_level": 0.0}
@@ -111,9 +111,9 @@ def stages_of(*given: Mapping, **more: Any) -> list[StageHistory]:
     return stage_histories(scene | {"stages": list(given)})
 
 
-def pressed(reported: StageHistory) -> Array:
+def pressed(history: StageHistory) -> Array:
     """Pressure inside [Pa] by the tension in the wall, less that of the oil's own weight and of the water."""
-    end = reported.end
+    end = history.end
     assert end.wall_tension is not None
     z = end.position[:, 2]
     outside = -RHO * G * z * A_OUT
@@ -124,13 +124,13 @@ def pressed(reported: StageHistory) -> Array:
 def test_a_stage_changes_the_pressure_and_those_after_it_keep_it(dimension: int) -> None:
     """T_w = T + p_i A_i - p_o A_o, with T, shape and strain as they are."""
     test, later = static("test", pressure=5.0e6), dynamic(0.2, 0.1, "later")
-    found = stages_of(static("hang"), test, later, dynamic(0.2, 0.1, "open", pressure=0.0), dimension=dimension)
-    for reported, pressure in zip(found, (1.0e6, 5.0e6, 5.0e6, 0.0), strict=True):
-        np.testing.assert_allclose(pressed(reported), pressure, rtol=1e-9, atol=1e-2)
-    still = found[0].end
-    for reported in found[1:]:
-        np.testing.assert_allclose(reported.end.effective_tension, still.effective_tension, rtol=1e-9, atol=1e-4)
-        np.testing.assert_allclose(reported.end.position, still.position, atol=1e-9)
+    histories = stages_of(static("hang"), test, later, dynamic(0.2, 0.1, "open", pressure=0.0), dimension=dimension)
+    for history, pressure in zip(histories, (1.0e6, 5.0e6, 5.0e6, 0.0), strict=True):
+        np.testing.assert_allclose(pressed(history), pressure, rtol=1e-9, atol=1e-2)
+    still = histories[0].end
+    for history in histories[1:]:
+        np.testing.assert_allclose(history.end.effective_tension, still.effective_tension, rtol=1e-9, atol=1e-4)
+        np.testing.assert_allclose(history.end.position, still.position, atol=1e-9)
 
 
 def test_over_a_static_stage_the_pressure_changes_with_the_load_factor() -> None:

@@ -44,7 +44,7 @@ def scene(steps: int, duration: float, elements: int, rho_inf: float, **more: An
     )
 
 
-def seen(mapping: Mapping, axis: int, v: Array, look: Callable[[Assembly, TimeStepper], tuple[float, ...]]) -> Array:
+def swung(mapping: Mapping, axis: int, v: Array, look: Callable[[Assembly, TimeStepper], tuple[float, ...]]) -> Array:
     """Time and what `look` sees after each step; v (nn,): the nodes' first speeds along an axis of the plane [m/s]."""
     assembly, rows = built(mapping), list[tuple[float, ...]]()
     rates = np.zeros(assembly.size)
@@ -84,7 +84,7 @@ class Strike:
             up = float(line.nodal(stepper.now.v)[:, 1] @ line.tributary_length) / L
             return assembly.ground_force(stepper.now), up, stepper.energy.total
 
-        t, force, up, energy = seen(bar, 1, np.full(steps + 1, -V), look)
+        t, force, up, energy = swung(bar, 1, np.full(steps + 1, -V), look)
         between = (t > 0.5) & (t < 1.8)
         self.time = float(t[np.flatnonzero(force)[-1]]) / 2.0
         self.peak, self.mean = float(force.max()) / FORCE, float(force[between].mean()) / FORCE
@@ -136,7 +136,7 @@ def taut_peak(folder: Path, steps: int, elements: int, rho_inf: float = 0.8) -> 
         riser={"initial": "straight"},
         stage={"motion": {"end": {"table": str(_moving_off(folder / "motion.csv"))}}},
     )
-    _, force = seen(line, 0, np.zeros(elements + 1), lambda assembly, stepper: (_start_force(assembly, stepper),))
+    _, force = swung(line, 0, np.zeros(elements + 1), lambda assembly, stepper: (_start_force(assembly, stepper),))
     return float(force.max()) / (2.0 * FORCE)
 
 
@@ -179,7 +179,7 @@ def test_tether_that_snaps_taut_in_no_time_overshoots_by_a_sixth() -> None:
         line = scene(steps, 1.8, steps, 0.8, start=prescribed(0.0, 0.0, 0.0), end="free", riser={"initial": "straight"})
         speeds = np.full(steps + 1, V)
         speeds[0] = 0.0
-        t, force = seen(line, 0, speeds, lambda assembly, stepper: (_start_force(assembly, stepper),))
+        t, force = swung(line, 0, speeds, lambda assembly, stepper: (_start_force(assembly, stepper),))
         after = (t > 0.3) & (t < 1.7)
         assert abs(force[after].mean() / FORCE - 1.0) < 1e-3
         peaks.append(force.max() / FORCE)

@@ -83,6 +83,6 @@ def test_the_wheel_alone_runs_the_first_scene(tmp_path: Path, extra: str) -> Non
     stages = json.loads((tmp_path / "results/summary.json").read_text())["stages"]
     assert stages[0]["final"]["end"]["resultant_force"] == pytest.approx(87.82e3, abs=10.0)
     for command, bringing in LACKING:
-        reported = refused(programs, tmp_path, *command)
-        assert bringing in reported
-        assert reported.count("\n") == 1, reported
+        message = refused(programs, tmp_path, *command)
+        assert bringing in message
+        assert message.count("\n") == 1, message

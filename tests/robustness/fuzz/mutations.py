@@ -25,10 +25,10 @@ Place = tuple[Any, Any]
 
 @dataclass(frozen=True)
 class Case:
-    """Files of one mutated scene, by name; the scene itself is SCENE. reported: what was done to it."""
+    """Files of one mutated scene, by name; the scene itself is SCENE. changes: what was done to it."""
 
     files: dict[str, bytes]
-    reported: str
+    changes: str
 
 
 def cases(count: int, seed: int) -> Iterator[Case]:
@@ -39,27 +39,27 @@ def cases(count: int, seed: int) -> Iterator[Case]:
 
 def _case(rng: random.Random) -> Case:
     base = rng.choice(bases())
-    data, reported = deepcopy(base.data), [str(base.data["title"])]
+    data, changes = deepcopy(base.data), [str(base.data["title"])]
     for _ in range(rng.choice((1, 1, 1, 2, 3))):
-        reported.append(rng.choices(*zip(*IN_DATA, strict=True))[0](data, rng))
+        changes.append(rng.choices(*zip(*IN_DATA, strict=True))[0](data, rng))
     files = {**base.files, SCENE: _written(data).encode("utf-8", "surrogatepass")}
     if rng.random() < 0.2:
         name = rng.choice(sorted(files))
         how = rng.choice(IN_TEXT)
         files[name] = how(files[name], rng)
-        reported.append(f"{name}: {how.__name__.strip('_')}")
-    return Case(files, "; ".join(reported))
+        changes.append(f"{name}: {how.__name__.strip('_')}")
+    return Case(files, "; ".join(changes))
 
 
 def _places(data: Any, numbers: bool = False) -> list[Place]:
     """Every value of the scene, or every number."""
     items = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
-    found: list[Place] = []
+    places: list[Place] = []
     for key, value in items:
         if not numbers or (isinstance(value, int | float) and not isinstance(value, bool)):
-            found.append((data, key))
-        found += _places(value, numbers)
-    return found
+            places.append((data, key))
+        places += _places(value, numbers)
+    return places
 
 
 def _number_replaced(data: Mapping, rng: random.Random) -> str:

@@ -30,7 +30,7 @@ class FuzzedScene:
     """One scene, by its number and what was done to it, and how it ended."""
 
     number: int
-    reported: str
+    changes: str
     ending: Ending
 
 
@@ -46,7 +46,7 @@ def _ending(number: int, case: Case, folder: Path) -> FuzzedScene:
     place.mkdir()
     for name, content in case.files.items():
         (place / name).write_bytes(content)
-    return FuzzedScene(number, case.reported, ended(_run, place, LIMITS))
+    return FuzzedScene(number, case.changes, ended(_run, place, LIMITS))
 
 
 def _run() -> int:
@@ -55,17 +55,17 @@ def _run() -> int:
     return int(app(["run", SCENE, "-o", "out"], standalone_mode=False) or 0)
 
 
-def report(found: Iterable[FuzzedScene]) -> bool:
+def report(scenes: Iterable[FuzzedScene]) -> bool:
     """Print what went wrong as it comes, then the counts; whether all ended well."""
     counts: Counter[str] = Counter()
     seconds, longest, well = 0.0, 0.0, True
-    for scene in found:
+    for scene in scenes:
         ending = scene.ending
         counts[ending.word] += 1
         seconds, longest, well = seconds + ending.seconds, max(longest, ending.seconds), well and ending.well
         if not ending.well:
             last = " | ".join(ending.output.strip().splitlines()[-3:])
-            print(f"{scene.number:04d} {ending.word}: {scene.reported}\n     {last}", flush=True)
+            print(f"{scene.number:04d} {ending.word}: {scene.changes}\n     {last}", flush=True)
     print(", ".join(f"{number} {word}" for word, number in sorted(counts.items())))
     print(f"{sum(counts.values())} scenes, {seconds:.0f} s of CPU in all, {longest:.1f} s at most")
     return well

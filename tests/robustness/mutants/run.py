@@ -80,14 +80,14 @@ def outcome(files: Iterable[str], longest: float) -> str:
         command, cwd=COPY, env=os.environ | own, stdout=subprocess.PIPE, text=True, start_new_session=True
     ) as process:
         try:
-            reported = process.communicate(timeout=longest)[0]
+            output = process.communicate(timeout=longest)[0]
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
             return f"no end within {longest:g} s"
-    failed = re.search(r"^(?:FAILED|ERROR) tests/(\S+)", reported, re.MULTILINE)
+    failed = re.search(r"^(?:FAILED|ERROR) tests/(\S+)", output, re.MULTILINE)
     if process.returncode == 0 or (process.returncode == 1 and failed):
         return failed[1] if failed else ""
-    raise RuntimeError(f"pytest ends with {process.returncode}: {reported[-2000:]}")
+    raise RuntimeError(f"pytest ends with {process.returncode}: {output[-2000:]}")
 
 
 def noticed(place: Place) -> str:

@@ -95,14 +95,14 @@ def _answers(stressed: StressedScene, done: list[StressedScene]) -> Iterator[Ans
 
 def _at_rest(run: Run) -> Iterator[Answer]:
     """Dynamic stages without motion: their extremes are the static stage's values."""
-    found = list(key_results(run.summary).values())
+    results = list(key_results(run.summary).values())
     statics, moving = (
         [stage["name"] for stage in run.summary["stages"] if (stage["kind"] == "static") is still]
         for still in (True, False)
     )
-    before = {each.label: each for each in found if each.stage == statics[-1]}
+    before = {each.label: each for each in results if each.stage == statics[-1]}
     names = ("top tension", "force at end", "force at start")
-    for now in found:
+    for now in results:
         if now.stage in moving and now.name in names and now.label in before:
             yield between(f"{now.key}, apart from rest [-]", before[now.label].error(now), 0.0, AT_REST)
 

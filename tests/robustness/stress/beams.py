@@ -77,9 +77,9 @@ def elastica(ratio: float) -> tuple[float, float]:
 def buckled(ratio: float, dimension: int) -> Callable[[], Trial]:
     def answers(run: Run) -> Iterator[Answer]:
         along, aside = elastica(ratio)
-        found = tip(run)
-        yield near("tip along [m]", found[0], along, within=1e-3)
-        yield near("tip aside [m]", float(np.hypot(found[1], found[2])), aside, within=1e-3)
+        deflection = tip(run)
+        yield near("tip along [m]", deflection[0], along, within=1e-3)
+        yield near("tip aside [m]", float(np.hypot(deflection[1], deflection[2])), aside, within=1e-3)
 
     def make() -> Trial:
         return one(column(40, ratio, 1e7, dimension), answers, NAMED_LOAD)
@@ -102,9 +102,9 @@ def column_at_0_999_of_its_buckling_load() -> Trial:
     """A perfect column just below Euler's load stays straight: nothing aside."""
 
     def answers(run: Run) -> Iterator[Answer]:
-        found = tip(run)
-        yield between("tip aside [m]", float(np.hypot(found[1], found[2])), 0.0, 1e-6)
-        yield near("tip along [m]", found[0], 1.0 - 0.999 * EULER / 1e7, within=1e-6)
+        deflection = tip(run)
+        yield between("tip aside [m]", float(np.hypot(deflection[1], deflection[2])), 0.0, 1e-6)
+        yield near("tip along [m]", deflection[0], 1.0 - 0.999 * EULER / 1e7, within=1e-6)
 
     return one(column(40, 0.999), answers)
 

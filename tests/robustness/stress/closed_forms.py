@@ -32,9 +32,9 @@ def hanging(span: float, rise: float, length: float, w: float, EA: float) -> Han
 
     slack = max(length / np.hypot(span, rise) - 1.0, 1e-6)
     guess = np.array([np.log(0.3 * span / length / np.sqrt(slack)), 0.5 * (rise / length - 1.0)])
-    found, _, flag, text = fsolve(misses, guess, xtol=1e-13, full_output=True)
-    assert flag == 1 or np.abs(misses(found)).max() < 1e-10, text
-    H, V = np.exp(found[0]) * w * length, found[1] * w * length + w * length
+    solution, _, flag, text = fsolve(misses, guess, xtol=1e-13, full_output=True)
+    assert flag == 1 or np.abs(misses(solution)).max() < 1e-10, text
+    H, V = np.exp(solution[0]) * w * length, solution[1] * w * length + w * length
     return HangingLine(float(H), float(np.hypot(H, V)), float(V))
 
 

@@ -40,8 +40,8 @@ def level_pipe(
 def impact(dt: float) -> Callable[[], Trial]:
     def answers(run: Run) -> Iterator[Answer]:
         exact = 40.0 * (W + np.sqrt(W * W + 2.0 * 1e6 * W * 0.1))
-        found = run.summary["stages"][0]["extremes"]["contact_force"]["max"]
-        yield near("largest contact force [N]", found, exact, rel=0.02)
+        force = run.summary["stages"][0]["extremes"]["contact_force"]["max"]
+        yield near("largest contact force [N]", force, exact, rel=0.02)
 
     def make() -> Trial:
         return one(level_pipe(0.1, 1e6, dt, 0.25), answers, IMPACT)
@@ -64,9 +64,9 @@ def first_contact_in_mid_step() -> Trial:
     """
 
     def answers(run: Run) -> Iterator[Answer]:
-        reported = run.summary["stages"][0]
+        stage = run.summary["stages"][0]
         most = 40.0 * (W + np.sqrt(W * W + 2.0 * 1e5 * W * 1.0))
-        yield between("largest contact force [N]", reported["extremes"]["contact_force"]["max"], 0.0, 1.001 * most)
+        yield between("largest contact force [N]", stage["extremes"]["contact_force"]["max"], 0.0, 1.001 * most)
         yield between("greatest height [m]", float(run["position"][:, :, 2].max()), -1.1, 1e-9)
         last = run.time > 15.0
         yield near("mean contact force at rest [N]", run["contact_force_sum"][last][:, 2].mean(), 40.0 * W, rel=1e-2)

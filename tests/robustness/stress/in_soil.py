@@ -68,11 +68,11 @@ def penalty_on_soil_over_six_decades() -> Trial:
     refinement = {f"k{n}": pushed(stiffness=10.0**n) for n in (5, 7, 9, 11)}
 
     def answers(runs: Runs) -> Iterator[Answer]:
-        found = [resistance(runs[name]) for name in refinement]
-        yield between("least growth along the ladder [N/m]", float(np.diff(found).min()), 0.0)
-        yield between("the softest over Hertz's [-]", found[0] / hertz(0.49), 0.0, 1.0)
-        yield near("resistance at 1e11 N/m2 [N/m]", found[-1], hertz(0.49), rel=0.15)
-        yield near("that at 1e9 over 1e11 N/m2 [-]", found[-2] / found[-1], 1.0, rel=0.01)
+        forces = [resistance(runs[name]) for name in refinement]
+        yield between("least growth along the ladder [N/m]", float(np.diff(forces).min()), 0.0)
+        yield between("the softest over Hertz's [-]", forces[0] / hertz(0.49), 0.0, 1.0)
+        yield near("resistance at 1e11 N/m2 [N/m]", forces[-1], hertz(0.49), rel=0.15)
+        yield near("that at 1e9 over 1e11 N/m2 [-]", forces[-2] / forces[-1], 1.0, rel=0.01)
 
     return Trial(refinement, answers)
 

@@ -120,7 +120,7 @@ def slope_of_45_degrees_with_friction() -> Trial:
 
     def answers(run: Run) -> Iterator[Answer]:
         share = 100.0 * W * np.sqrt(0.5)
-        found = run["effective_tension"][-1, 0]
-        yield between("tension at the upper end [N]", found, 0.5 * share * (1.0 - 1e-3), share)
+        tension = run["effective_tension"][-1, 0]
+        yield between("tension at the upper end [N]", tension, 0.5 * share * (1.0 - 1e-3), share)
 
     return one(on_slope(0.5), answers)

@@ -65,9 +65,9 @@ def outcome(
     error, or of the warning about an answer that does not hold. Without it any error of the program's own is told
     plainly, and no warning makes up for a wrong answer.
     """
-    found = list(answers) if ending.finished else []
-    worst = max(found, key=lambda answer: answer.severity, default=None)
-    verdict = _verdict(ending, found, may_tell)
+    results = list(answers) if ending.finished else []
+    worst = max(results, key=lambda answer: answer.severity, default=None)
+    verdict = _verdict(ending, results, may_tell)
     hoped = verdict == PASSED or (verdict == REPORTED and may_tell is not None and _says(ending, may_tell))
     stages = [stage for run in runs for stage in run.summary["stages"]]
     residuals = [worst_residual(stage) for stage in stages if stage["kind"] == "dynamic"]

@@ -53,9 +53,9 @@ QUIETLY WRONG. A coarse setting may be. The folder gets the scenes, their result
 def page(rows: Sequence[StressOutcome], made: Mapping[str, Any]) -> str:
     """The whole page in Markdown."""
     counts = Counter(row.verdict for row in rows)
-    reported = ", ".join(f"{number} {verdict}" for verdict, number in sorted(counts.items()))
+    verdicts = ", ".join(f"{number} {verdict}" for verdict, number in sorted(counts.items()))
     seconds = sum(row.seconds for row in rows)
-    summary = f"{len(rows)} cases in {seconds:.0f} s of processor time, compilation included: {reported}."
+    summary = f"{len(rows)} cases in {seconds:.0f} s of processor time, compilation included: {verdicts}."
     circumstances = ", ".join(f"{name} {value}" for name, value in made.items())
     others = [row for row in rows if row.verdict != PASSED]
     parts = [INTRODUCTION, summary, "", f"Made: {circumstances}.", "", "## Passed", "", passed(rows), ""]

@@ -80,15 +80,15 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--keep", type=Path, help="leave scenes, output and results in this folder")
     asked = parser.parse_args(arguments)
     with tempfile.TemporaryDirectory() as folder:
-        found = []
+        all_outcomes = []
         for row in outcomes(chosen(asked.names, asked.quick), asked.keep or Path(folder), asked.workers):
-            found.append(row)
+            all_outcomes.append(row)
             print(line_of(row), flush=True)
     if asked.page:
-        publish(found)
-    missed = [row.name for row in found if not row.as_hoped]
-    seconds = sum(row.seconds for row in found)
-    print(f"{len(found)} cases, {seconds:.0f} s of CPU; not as they are to end: {missed or 'none'}")
+        publish(all_outcomes)
+    missed = [row.name for row in all_outcomes if not row.as_hoped]
+    seconds = sum(row.seconds for row in all_outcomes)
+    print(f"{len(all_outcomes)} cases, {seconds:.0f} s of CPU; not as they are to end: {missed or 'none'}")
     return 1 if missed else 0
 
 

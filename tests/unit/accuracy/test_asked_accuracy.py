@@ -59,10 +59,10 @@ def test_what_is_asked_has_none_of_what_it_chooses() -> None:
 def test_quick_scenes_reach_it(name: str) -> None:
     known = references.read()[name]
     hand = by_hand.read()[name]
-    found = asked(name, ASKED[name], known, hand)
-    assert found.outcome is Outcome.REACHED
-    assert found.cost is not None
-    assert 0.0 < found.cost.chosen < found.cost.everything
+    outcome = asked(name, ASKED[name], known, hand)
+    assert outcome.outcome is Outcome.REACHED
+    assert outcome.cost is not None
+    assert 0.0 < outcome.cost.chosen < outcome.cost.everything
     far = {key: (1.05 * value, 0.0) for key, (value, _) in known.items()}
     assert asked(name, ASKED[name], far).outcome is Outcome.MISSED
 
@@ -70,27 +70,27 @@ def test_quick_scenes_reach_it(name: str) -> None:
 def test_page_of_a_random_scene() -> None:
     name = "catenary A"
     known = references.read(FILE)[name]
-    found = asked(name, OTHERS[name], known)
+    outcome = asked(name, OTHERS[name], known)
     bars = [judge(name, OTHERS[name], known)]
-    reported = page(made_up(), [found], bars, made_up())
-    assert found.outcome is Outcome.REACHED
-    line_with(block(reported, FIGURES), "truly reach", "claim it", "| 66.7% |")
+    text = page(made_up(), [outcome], bars, made_up())
+    assert outcome.outcome is Outcome.REACHED
+    line_with(block(text, FIGURES), "truly reach", "claim it", "| 66.7% |")
     missed = not_reached(made_up())
     assert line_with(missed, "missed, 3.00%", "hang: top tension").startswith('b,"')
     assert line_with(missed, "accuracy:", "not reached").startswith("c,")
-    assert f"\n{name},reached," in random_page([found], bars)
+    assert f"\n{name},reached," in random_page([outcome], bars)
 
 
 def test_best_by_hand_is_the_cheapest_that_reaches_it() -> None:
     name = "catenary, 35 elements"
     reference = references.read()[name]
-    found = best(ASKED[name], reference)
-    assert found is not None
+    setting = best(ASKED[name], reference)
+    assert setting is not None
     known = by_hand.read()[name]
     assert known is not None
-    assert found.factors == known.factors
-    assert found.error == pytest.approx(known.error, rel=1e-6)
-    assert found.error <= ACCURACY
+    assert setting.factors == known.factors
+    assert setting.error == pytest.approx(known.error, rel=1e-6)
+    assert setting.error <= ACCURACY
     uncertain = {key: (value, abs(value)) for key, (value, _) in reference.items()}
     assert best(ASKED[name], uncertain) is None
 

@@ -45,8 +45,8 @@ SOIL_MESH, PENALTY = (next(each for each in SETTINGS if each.name == name) for n
 QUICK = ("catenary, 35 elements", "cantilever, tip load", "on springs", "surge, 140 steps", "hose on a rigid floor")
 
 
-def bar_of(reported: float, peak: float, *comparison_runs: ComparisonRun, soil: SoilOfRun | None = None) -> ErrorBar:
-    key_result = KeyResult("hang", "top tension", "N", reported, 1000.0)
+def bar_of(value: float, peak: float, *comparison_runs: ComparisonRun, soil: SoilOfRun | None = None) -> ErrorBar:
+    key_result = KeyResult("hang", "top tension", "N", value, 1000.0)
     values = RunValues({KEY: key_result}, {KEY: peak}, {KEY: without_windows(peak)}, {KEY: peak})
     (bar,) = error_bars(values, comparison_runs, rigid=False, soil=soil)
     return bar
@@ -118,21 +118,21 @@ def on_soil(tension: float = 1000.0, settled: float = 1e-3) -> RunValues:
 
 
 @pytest.mark.parametrize(
-    ("fine", "seen"), [(0.9e-3, 1.0), (1.3e-3, 1.5), (1.9e-3, MOST_SEEN), (1.01e-3, 1.0), (None, MOST_SEEN)]
+    ("fine", "share"), [(0.9e-3, 1.0), (1.3e-3, 1.5), (1.9e-3, MOST_SEEN), (1.01e-3, 1.0), (None, MOST_SEEN)]
 )
-def test_a_slice_tells_the_cells_share(fine: float | None, seen: float) -> None:
+def test_a_slice_tells_the_cells_share(fine: float | None, share: float) -> None:
     """Cells twice as wide settle 0.2 mm less than 1 mm, and change a tension by 1 N. Without a slice all counts twice;
     else the settlement by the slice, and the tension once to twice as the slice's change is over that 0.2 mm.
     """
     run, coarser = on_soil(), on_soil(1001.0, 0.8e-3)
     of_settlement = f"hang: {SETTLEMENT}"
     soil = SoilOfRun(True, {} if fine is None else {of_settlement: fine})
-    found = error_bars(run, [ComparisonRun("soil", 0.5, coarser.peaks)], rigid=False, soil=soil)
-    tension, settlement = (each.by_source["soil"] for each in found)
-    assert tension == pytest.approx(BY_SLICE * seen * 1.0)
-    by_slice = BY_SLICE * seen * 0.2e-3 if fine is None else math.hypot(SLICE * (fine - 1e-3), AT_REST * 0.2e-3)
+    bars = error_bars(run, [ComparisonRun("soil", 0.5, coarser.peaks)], rigid=False, soil=soil)
+    tension, settlement = (each.by_source["soil"] for each in bars)
+    assert tension == pytest.approx(BY_SLICE * share * 1.0)
+    by_slice = BY_SLICE * share * 0.2e-3 if fine is None else math.hypot(SLICE * (fine - 1e-3), AT_REST * 0.2e-3)
     assert settlement == pytest.approx(by_slice)
-    assert found[0].bar == pytest.approx(tension + SMALLEST_ON_SOIL * 1000.0)
+    assert bars[0].bar == pytest.approx(tension + SMALLEST_ON_SOIL * 1000.0)
 
 
 def test_a_slice_is_pressed_once_and_a_trough_in_motion_is_not() -> None:
@@ -154,8 +154,8 @@ def test_bars_see_clay_that_yields_on_fine_cells_alone(monkeypatch: pytest.Monke
     known = references.read(references.ON_SOIL)[name]
 
     def settled() -> Judged:
-        (found,) = (each for each in judge(name, SOILS[name], known).judged if each.bar.key_result.name == SETTLEMENT)
-        return found
+        (bar,) = (each for each in judge(name, SOILS[name], known).judged if each.bar.key_result.name == SETTLEMENT)
+        return bar
 
     assert settled().inside
     monkeypatch.setattr("riser_soil.accuracy.error_bars.SLICE", 0.0)
@@ -171,8 +171,8 @@ def test_a_slice_that_fails_leaves_wider_bars(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(chain, "settlements_on_fine_cells", fails)
     monkeypatch.setattr(chain, "has_many_slices", lambda scene: True)
     scene = scene_from_mapping(SCENES["pipe pressed on clay"])
-    found = chain.bars_of(scene, on_soil(), [ComparisonRun("soil", 0.5, on_soil(1001.0, 0.8e-3).peaks)])
-    assert [each.by_source["soil"] for each in found] == pytest.approx([2.0 * BY_SLICE, 2.0 * BY_SLICE * 0.2e-3])
+    bars = chain.bars_of(scene, on_soil(), [ComparisonRun("soil", 0.5, on_soil(1001.0, 0.8e-3).peaks)])
+    assert [each.by_source["soil"] for each in bars] == pytest.approx([2.0 * BY_SLICE, 2.0 * BY_SLICE * 0.2e-3])
 
 
 def course(*windows: float, least: bool = False) -> Extreme:
@@ -198,14 +198,14 @@ def test_windows_that_are_not_known_do_not_count() -> None:
 def test_soil_that_depends_on_its_path_takes_a_larger_factor() -> None:
     """Clay, or layers of which one is clay; elastic soil does not, nor does a scene without soil."""
     yields = {name: scene_from_mapping(scene).has_path_dependent_soil for name, scene in SCENES.items()}
-    assert {name for name, found in yields.items() if found} == {name for name in SOIL if "clay" in name}
+    assert {name for name, dependent in yields.items() if dependent} == {name for name in SOIL if "clay" in name}
     soil = SCENES["pipe pressed on elastic soil"]["soil"]
     layers = [{"to": 0.5, "law": soil["law"]}, {"law": CLAY}]
     mixed = {key: value for key, value in soil.items() if key != "law"} | {"layers": layers}
     scene = scene_from_mapping(SCENES["pipe pressed on elastic soil"] | {"soil": mixed})
     assert scene.has_path_dependent_soil
     coarser = of_order(1.0, 0.5, 1.0, "soil")
-    elastic, clay = (bar_of(1000.0, 1000.0, coarser, soil=SoilOfRun(found)) for found in (False, True))
+    elastic, clay = (bar_of(1000.0, 1000.0, coarser, soil=SoilOfRun(dependent)) for dependent in (False, True))
     assert (elastic.by_source["soil"], clay.by_source["soil"]) == pytest.approx((SAFETY["soil"], ON_PATH))
 
 
@@ -244,15 +244,15 @@ def run_reported(tmp_path: Path, name: str, **more: Any) -> Any:
 
 
 def test_bars_of_a_run_are_on_the_screen_and_in_its_summary(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    reported = run_reported(tmp_path, "cantilever let go", output={"fields": []})
+    summary = run_reported(tmp_path, "cantilever let go", output={"fields": []})
     screen = capsys.readouterr().out
     assert "motion: error bars" in screen
     assert "force at start, N" in screen
-    quantities = {(bar["stage"], bar["name"]): bar for bar in reported["error_bars"]["quantities"]}
+    quantities = {(bar["stage"], bar["name"]): bar for bar in summary["error_bars"]["quantities"]}
     bar = quantities["motion", "largest bending moment"]
     assert set(bar["by_source"]) == {"mesh", "time"}
     assert 0.0 < bar["bar"] < 0.2 * bar["value"]
-    assert reported["finished"]
+    assert summary["finished"]
     assert not (tmp_path / "run" / ".riser_soil").exists()
 
 
@@ -263,9 +263,9 @@ def test_coarser_run_that_fails_is_reported_and_its_run_stays(
         raise SolveError("no convergence at 3 s\nmore of it")
 
     monkeypatch.setattr(chain, "peaks_of", fails)
-    reported = run_reported(tmp_path, "cantilever let go")
-    assert reported["finished"]
-    assert {bar["bar"] for bar in reported["error_bars"]["quantities"]} == {None}
+    summary = run_reported(tmp_path, "cantilever let go")
+    assert summary["finished"]
+    assert {bar["bar"] for bar in summary["error_bars"]["quantities"]} == {None}
     line_with(capsys.readouterr().out, "coarser run failed:", "no convergence", "3 s")
 
 
@@ -279,9 +279,9 @@ def test_in_the_place_of_a_finer_run_that_fails_comes_a_coarser_one(monkeypatch:
         return RunPeaks()
 
     monkeypatch.setattr(chain, "peaks_of", fails_if_finer)
-    found = chain.comparison_runs(scene, Alone())
-    assert [(each.source, each.extremes is not None) for each in found] == [("time", True), ("mesh", True)]
-    assert found[1].finer == pytest.approx(0.5)
+    runs = chain.comparison_runs(scene, Alone())
+    assert [(each.source, each.extremes is not None) for each in runs] == [("time", True), ("mesh", True)]
+    assert runs[1].finer == pytest.approx(0.5)
 
 
 def test_error_that_one_rank_may_have_met_alone_is_no_failed_coarser_run(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -302,9 +302,9 @@ def test_coarser_runs_go_on_from_one_to_the_next(looked_at: list[Scene]) -> None
     times as stiff, so that a riser sinks in over half the length.
     """
     scene = scene_from_mapping(SCENES["hose swings on a rigid floor"] | {"output": {"interval": 0.1}})
-    found = chain.comparison_runs(scene, None)
-    assert [each.source for each in found] == ["time", "mesh"]
-    assert [each.finer for each in found] == pytest.approx([0.25, 2.0])  # four times as long at most
+    runs = chain.comparison_runs(scene, None)
+    assert [each.source for each in runs] == ["time", "mesh"]
+    assert [each.finer for each in runs] == pytest.approx([0.25, 2.0])  # four times as long at most
     assert [each.line.element_count for each in looked_at] == [80, 160]
     assert [each.contact and each.contact.stiffness for each in looked_at] == [1e5, 16e5]
     assert {each.output.interval for each in looked_at} == {None}
@@ -319,10 +319,10 @@ def test_longer_steps_are_left_to_the_shortest_period(name: str, longer: float, 
 def test_on_soil_one_run_is_coarser_in_everything(looked_at: list[Scene]) -> None:
     """Cells and elements twice as long, steps half as long again, a quarter of the penalty."""
     scene = resolved(scene_from_mapping(SOILS["heaved on sections 4"]))
-    (found,) = chain.comparison_runs(scene, None)
+    (one_run,) = chain.comparison_runs(scene, None)
     (coarser,) = looked_at
-    assert found.source == "soil"
-    assert found.finer == pytest.approx(0.5)
+    assert one_run.source == "soil"
+    assert one_run.finer == pytest.approx(0.5)
     for setting in SETTINGS:
         ratio = {"time_step": 2.0 / 3.0, "penalty": 0.25}.get(setting.name, 0.5)
         assert setting.fineness(coarser) == pytest.approx(ratio * setting.fineness(scene), rel=0.02)
@@ -332,9 +332,9 @@ def test_on_a_block_the_runs_own_steps_come_after_what_is_coarser_in_everything(
     """On the same coarser cells, elements and penalty."""
     given = SOILS["heaved on sections 4"]
     scene = resolved(scene_from_mapping(given | {"soil": given["soil"] | {"model": "block"}}))
-    found = chain.comparison_runs(scene, None)
-    assert [each.source for each in found] == ["soil", "time"]
-    assert found[1].finer == pytest.approx(1.5)
+    runs = chain.comparison_runs(scene, None)
+    assert [each.source for each in runs] == ["soil", "time"]
+    assert runs[1].finer == pytest.approx(1.5)
     coarser, own = looked_at
     for setting in SETTINGS:
         like = scene if setting.name == "time_step" else coarser
@@ -343,9 +343,9 @@ def test_on_a_block_the_runs_own_steps_come_after_what_is_coarser_in_everything(
 
 def test_cells_of_a_few_slices_are_coarsened_twice(looked_at: list[Scene]) -> None:
     """Then elements are twice as many on a penalty four times as hard."""
-    found = chain.comparison_runs(scene_from_mapping(SCENES["pipe pressed on clay"]), None)
-    assert [each.source for each in found] == ["soil", "soil", "mesh"]
-    assert [each.finer for each in found] == pytest.approx([0.6, 0.6, 2.0])
+    runs = chain.comparison_runs(scene_from_mapping(SCENES["pipe pressed on clay"]), None)
+    assert [each.source for each in runs] == ["soil", "soil", "mesh"]
+    assert [each.finer for each in runs] == pytest.approx([0.6, 0.6, 2.0])
     coarse = [f"soil cells of {0.025 / share:.4g} m across the riser" for share in (0.6, 0.36, 0.36)]
     assert [settings_in_words(each, [SOIL_MESH]) for each in looked_at] == coarse
     assert PENALTY.fineness(looked_at[2]) == pytest.approx(4.0 * PENALTY.fineness(looked_at[1]))
@@ -363,38 +363,38 @@ def test_a_firm_penalty_on_soil_is_not_varied(looked_at: list[Scene]) -> None:
 @pytest.fixture
 def looked_at(monkeypatch: pytest.MonkeyPatch) -> list[Scene]:
     """Comparison runs, which are not computed."""
-    seen: list[Scene] = []
+    scenes: list[Scene] = []
 
     def looks(scene: Scene, comm: object) -> RunPeaks:
-        seen.append(scene)
+        scenes.append(scene)
         return RunPeaks()
 
     monkeypatch.setattr(chain, "peaks_of", looks)
-    return seen
+    return scenes
 
 
 def test_a_scene_may_ask_for_bars(tmp_path: Path) -> None:
     file, folder = tmp_path / "scene.yaml", tmp_path / "run"
     file.write_text(json.dumps(SCENES["cantilever, tip load"] | {"error_bars": True}), encoding="utf-8")
     assert CliRunner().invoke(app, ["run", str(file), "-o", str(folder)]).exit_code == 0
-    reported = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    assert {bar["bar"] is None for bar in reported["error_bars"]["quantities"]} == {False}
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    assert {bar["bar"] is None for bar in summary["error_bars"]["quantities"]} == {False}
 
 
 def test_what_cannot_be_varied_has_no_bar(monkeypatch: pytest.MonkeyPatch) -> None:
     """It must not look exact."""
     monkeypatch.setattr(settings, "MOST_ELEMENTS", 7)
-    (found,) = chain.comparison_runs(scene_from_mapping(SCENES["cantilever, tip load"]), None)
-    assert found.extremes is None
-    assert "more than 7 elements" in found.reason
+    (coarser,) = chain.comparison_runs(scene_from_mapping(SCENES["cantilever, tip load"]), None)
+    assert coarser.extremes is None
+    assert "more than 7 elements" in coarser.reason
 
 
 def test_the_page_has_each_kind_in_and_out_of_sample() -> None:
     name = "catenary, 20 elements"
-    found = [judge(name, SCENES[name], references.read()[name])]
-    reported = page(found, found, "").splitlines()
+    scenes = [judge(name, SCENES[name], references.read()[name])]
+    lines = page(scenes, scenes, "").splitlines()
     for kind in ("top tension", "no ground", "static"):
-        (row,) = (line for line in reported if line.startswith(f"| {kind} |"))
+        (row,) = (line for line in lines if line.startswith(f"| {kind} |"))
         judged = [cell.strip() for cell in row.split("|")[2:-1]]
         assert int(judged[0]) > 0
         assert judged[:3] == judged[3:]

@@ -41,9 +41,9 @@ def laid(across: float, law: dict[str, Any] = ELASTIC, axis: int = 0, along: flo
 
 
 def fine(scene: Scene, *settlements: float) -> list[float]:
-    found = settlements_on_fine_cells(scene, settlements)
-    assert found is not None
-    return found
+    values = settlements_on_fine_cells(scene, settlements)
+    assert values is not None
+    return values
 
 
 def strip(load: float, width: float) -> float:
@@ -58,9 +58,9 @@ def test_wide_cells_settle_less_by_their_logarithm() -> None:
     load = 1.2 * WEIGHT
     touching = 2.0 * float(np.sqrt(2.0 * load * D * (1.0 - NU**2) / (np.pi * E)))
     on_cells = strip(load, 1.75 * WIDE)
-    (found,) = fine(laid(WIDE), on_cells)
-    assert found == pytest.approx(strip(load, touching), rel=0.08)
-    assert found > 1.3 * on_cells
+    (settlement,) = fine(laid(WIDE), on_cells)
+    assert settlement == pytest.approx(strip(load, touching), rel=0.08)
+    assert settlement > 1.3 * on_cells
 
 
 def test_cells_that_resolve_what_touches_are_right() -> None:

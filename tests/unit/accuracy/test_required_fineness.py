@@ -37,15 +37,15 @@ def bar(**shares: float) -> ErrorBar:
     return ErrorBar(KEY_RESULT, math.hypot(*by_source.values()) + SMALLEST * VALUE, by_source)
 
 
-def values(reported: float, peak: float | None = None) -> RunValues:
+def values(value: float, peak: float | None = None) -> RunValues:
     """Values of a run. peak: between its steps."""
-    key_result = KeyResult("hang", "top tension", "N", reported, 100.0)
+    key_result = KeyResult("hang", "top tension", "N", value, 100.0)
     return RunValues(
-        {KEY: key_result}, {KEY: reported}, {KEY: without_windows(reported if peak is None else peak)}, {KEY: reported}
+        {KEY: key_result}, {KEY: value}, {KEY: without_windows(value if peak is None else peak)}, {KEY: value}
     )
 
 
-def left(given: ErrorBar, factors: dict[str, float]) -> float:
+def remaining(given: ErrorBar, factors: dict[str, float]) -> float:
     """The relative bar once each source is finer."""
     return math.hypot(*(b / VALUE / factors.get(s, 1.0) ** ORDERS[s] for s, b in given.by_source.items())) + SMALLEST
 
@@ -56,7 +56,7 @@ def left(given: ErrorBar, factors: dict[str, float]) -> float:
 )
 def test_bars_just_keep_to_the_margin(shares: dict[str, float]) -> None:
     given = bar(**shares)
-    assert left(given, dict(required([given], 0.01))) == pytest.approx(MARGIN * 0.01, rel=1e-6)
+    assert remaining(given, dict(required([given], 0.01))) == pytest.approx(MARGIN * 0.01, rel=1e-6)
 
 
 def test_no_cheaper_way_leads_there() -> None:
@@ -71,7 +71,7 @@ def test_no_cheaper_way_leads_there() -> None:
         other = factors | {"mesh": mesh * factors["mesh"]}
         of_time = math.sqrt((MARGIN * 0.01 - SMALLEST) ** 2 - (0.02 / other["mesh"] ** ORDERS["mesh"]) ** 2)
         other["time"] = (0.04 / of_time) ** (1.0 / ORDERS["time"])
-        assert left(given, other) == pytest.approx(MARGIN * 0.01)
+        assert remaining(given, other) == pytest.approx(MARGIN * 0.01)
         assert cost(other) > cost(factors)
 
 
@@ -82,17 +82,17 @@ def test_what_is_accurate_enough_stays() -> None:
 
 def test_the_worst_quantity_counts_and_no_step_is_huge() -> None:
     """Elements four times as fine at most."""
-    found = required([bar(time=0.02), bar(time=0.05), bar(mesh=100.0)], 0.01)
-    assert found["time"] == pytest.approx(math.sqrt(0.05 / (MARGIN * 0.01 - SMALLEST)))
-    assert found["mesh"] == 4.0
+    factors = required([bar(time=0.02), bar(time=0.05), bar(mesh=100.0)], 0.01)
+    assert factors["time"] == pytest.approx(math.sqrt(0.05 / (MARGIN * 0.01 - SMALLEST)))
+    assert factors["mesh"] == 4.0
 
 
 def test_soil_is_at_most_twice_as_fine_in_the_next_run() -> None:
     """That is eight times as many cells."""
     assert required([bar(soil=0.015)], 0.01)["soil"] == pytest.approx(0.015 / (MARGIN * 0.01 - SMALLEST))
-    found = required([bar(soil=0.03, time=0.03)], 0.01)
-    assert found["soil"] == 2.0
-    assert cost_ratio(found) == pytest.approx(8.0 * found["time"])
+    factors = required([bar(soil=0.03, time=0.03)], 0.01)
+    assert factors["soil"] == 2.0
+    assert cost_ratio(factors) == pytest.approx(8.0 * factors["time"])
 
 
 def test_what_the_runs_that_are_left_can_not_reach_is_out_of_reach() -> None:
@@ -114,9 +114,10 @@ def test_unknown_bars_ask_for_a_finer_setting() -> None:
 
 
 def test_shares_fall_by_their_orders() -> None:
-    (found,) = predicted_bars([bar(mesh=0.02, time=0.04)], values(1000.0), values(1030.0), {"mesh": 2.0, "time": 4.0})
-    assert found.by_source == pytest.approx({"mesh": 5.0, "time": 2.5})
-    assert found.bar == pytest.approx(math.hypot(5.0, 2.5) + SMALLEST * 1030.0)
+    factors = {"mesh": 2.0, "time": 4.0}
+    (predicted,) = predicted_bars([bar(mesh=0.02, time=0.04)], values(1000.0), values(1030.0), factors)
+    assert predicted.by_source == pytest.approx({"mesh": 5.0, "time": 2.5})
+    assert predicted.bar == pytest.approx(math.hypot(5.0, 2.5) + SMALLEST * 1030.0)
 
 
 @pytest.mark.parametrize(
@@ -126,8 +127,8 @@ def test_shares_fall_by_their_orders() -> None:
 def test_share_of_a_source_that_is_finer_alone_is_by_the_difference(change: float, share: float) -> None:
     """By Richardson's extrapolation, be it more than predicted by the order, but no less than a part of that."""
     runs, factors = (values(1000.0), values(1000.0 + change)), {"penalty": 4.0 ** (1 / 0.75)}
-    (found,) = predicted_bars([bar(penalty=0.02)], *runs, factors)
-    assert found.by_source["penalty"] == pytest.approx(share)
+    (predicted,) = predicted_bars([bar(penalty=0.02)], *runs, factors)
+    assert predicted.by_source["penalty"] == pytest.approx(share)
 
 
 def test_difference_of_two_runs_bounds_the_share_of_each_of_several_sources() -> None:
@@ -144,14 +145,14 @@ def test_difference_of_two_runs_bounds_the_share_of_each_of_several_sources() ->
 
 
 def test_a_source_that_is_no_finer_keeps_its_share() -> None:
-    (found,) = predicted_bars([bar(penalty=0.02)], values(1000.0), values(1000.001), {"penalty": 1.0, "time": 2.0})
-    assert found.by_source["penalty"] == pytest.approx(20.0)
+    (predicted,) = predicted_bars([bar(penalty=0.02)], values(1000.0), values(1000.001), {"penalty": 1.0, "time": 2.0})
+    assert predicted.by_source["penalty"] == pytest.approx(20.0)
 
 
 @pytest.mark.parametrize("factors", [{"soil": 2.0}, {"soil": 2.0, "mesh": 2.0}])
 def test_two_meshes_of_soil_that_agree_may_do_so_by_chance(factors: dict[str, float]) -> None:
-    (found,) = predicted_bars([bar(soil=0.02)], values(1000.0), values(1000.0), factors)
-    assert found.by_source["soil"] == pytest.approx(10.0)
+    (predicted,) = predicted_bars([bar(soil=0.02)], values(1000.0), values(1000.0), factors)
+    assert predicted.by_source["soil"] == pytest.approx(10.0)
 
 
 @pytest.mark.parametrize(
@@ -176,14 +177,14 @@ def test_a_quantity_that_one_of_two_runs_lacks_can_not_be_predicted() -> None:
 
 
 def test_what_falls_between_the_runs_own_steps_is_kept() -> None:
-    (found,) = predicted_bars([bar(time=0.02)], values(1000.0), values(1000.0, peak=1008.0), {"time": 10.0})
-    assert found.by_source["time"] == pytest.approx(SAFETY["time"] * 8.0)
+    (predicted,) = predicted_bars([bar(time=0.02)], values(1000.0), values(1000.0, peak=1008.0), {"time": 10.0})
+    assert predicted.by_source["time"] == pytest.approx(SAFETY["time"] * 8.0)
 
 
 def test_a_quantity_that_the_run_before_lacks_is_not_known() -> None:
-    (found,) = predicted_bars([], values(1000.0), values(1000.0), {})
-    assert found.bar is None
-    assert "run before" in found.reason
+    (predicted,) = predicted_bars([], values(1000.0), values(1000.0), {})
+    assert predicted.bar is None
+    assert "run before" in predicted.reason
 
 
 def test_the_next_run_aims_as_close_as_there_is_time_for() -> None:

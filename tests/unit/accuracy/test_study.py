@@ -38,9 +38,9 @@ Answer = Callable[[float, float], float]
 
 
 def scene() -> Scene:
-    reported = touchdown(LAY, heave(1.0, 0.01))
-    del reported["soil"]
-    return scene_from_mapping(reported)
+    data = touchdown(LAY, heave(1.0, 0.01))
+    del data["soil"]
+    return scene_from_mapping(data)
 
 
 def manufactured(monkeypatch: pytest.MonkeyPatch, folder: Path, answer: Answer, **given: Any) -> Study:
@@ -54,11 +54,11 @@ def manufactured(monkeypatch: pytest.MonkeyPatch, folder: Path, answer: Answer, 
         h, dt = (1.0 / factor for factor in factors)
         if fails(h, dt):
             return PointOutcome(factors, 3, FAILED, 0.1, True)
-        found = {
+        values = {
             "heave: top tension": KeyResult("heave", "top tension", "N", answer(h, dt), 0.0),
             "heave: touchdown arc": KeyResult("heave", "touchdown arc", "m", 20.0 + 0.1 * (answer(h, dt) - 100.0), 0.0),
         }
-        return PointOutcome(factors, 0, "", 2.0 / (h * dt), True, 10, found)
+        return PointOutcome(factors, 0, "", 2.0 / (h * dt), True, 10, values)
 
     monkeypatch.setattr(findings, "compute", compute)
     return study(scene(), folder, echo=lambda _: None, **given)
@@ -70,19 +70,19 @@ def both(h: float, dt: float) -> float:
 
 
 def test_reference_and_shares_of_a_manufactured_answer(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    found = manufactured(monkeypatch, tmp_path / "s", both).quantities()["heave: top tension"]
-    assert found.reference.value == pytest.approx(100.0, abs=0.01)
-    assert abs(found.reference.value - 100.0) <= found.uncertainty < 0.2
-    assert found.error == pytest.approx(0.0372, abs=1e-4)
-    assert [each.order for each in found.limits] == [pytest.approx(4.0), pytest.approx(2.0)]
-    assert [found.share(0), found.share(1)] == [pytest.approx(0.0028, abs=1e-5), pytest.approx(0.0402, abs=1e-5)]
+    quantity = manufactured(monkeypatch, tmp_path / "s", both).quantities()["heave: top tension"]
+    assert quantity.reference.value == pytest.approx(100.0, abs=0.01)
+    assert abs(quantity.reference.value - 100.0) <= quantity.uncertainty < 0.2
+    assert quantity.error == pytest.approx(0.0372, abs=1e-4)
+    assert [each.order for each in quantity.limits] == [pytest.approx(4.0), pytest.approx(2.0)]
+    assert [quantity.share(0), quantity.share(1)] == [pytest.approx(0.0028, abs=1e-5), pytest.approx(0.0402, abs=1e-5)]
 
 
 def test_how_errors_act_together_is_in_the_uncertainty(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """An answer whose errors multiply more than they add."""
     made = manufactured(monkeypatch, tmp_path / "s", lambda h, dt: 100.0 + 4.0 * h**2 * dt**2 + dt**2)
-    found = made.quantities()["heave: top tension"]
-    assert 0.1 < abs(found.reference.value - 100.0) <= found.uncertainty
+    quantity = made.quantities()["heave: top tension"]
+    assert 0.1 < abs(quantity.reference.value - 100.0) <= quantity.uncertainty
 
 
 def test_the_limiting_setting_and_the_cheapest_settings(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -92,11 +92,11 @@ def test_the_limiting_setting_and_the_cheapest_settings(monkeypatch: pytest.Monk
         reached = made.reaching(target)
         assert reached is not None
         assert (reached.factors, reached.cpu) == (best, seconds)
-    reported = words(made)
-    line_with(reported, "as it is", "takes 2 s", "3.73 % off")
-    line_with(reported, "limits the accuracy", "is the time step")
-    line_with(reported, "1 % is reached", "least cost, 4 s", "36 elements, time_step 0.005 s")
-    line_with(reported, "0.1 % is reached", "least cost, 32 s", "72 elements, time_step 0.00125 s")
+    lines = words(made)
+    line_with(lines, "as it is", "takes 2 s", "3.73 % off")
+    line_with(lines, "limits the accuracy", "is the time step")
+    line_with(lines, "1 % is reached", "least cost, 4 s", "36 elements, time_step 0.005 s")
+    line_with(lines, "0.1 % is reached", "least cost, 32 s", "72 elements, time_step 0.00125 s")
 
 
 def test_the_pareto_front_falls(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -131,8 +131,8 @@ def test_a_failed_point_is_a_row_with_its_reason(monkeypatch: pytest.MonkeyPatch
 
 def test_a_failed_corner_leaves_a_reference(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     made = manufactured(monkeypatch, tmp_path / "s", both, fails=lambda h, dt: h < 1.0 and dt < 1.0)
-    found = made.quantities()["heave: top tension"]
-    assert abs(found.reference.value - 100.0) <= found.uncertainty < 1.0
+    quantity = made.quantities()["heave: top tension"]
+    assert abs(quantity.reference.value - 100.0) <= quantity.uncertainty < 1.0
 
 
 def test_what_does_not_close_in_is_not_judged(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -162,12 +162,12 @@ def test_a_target_finer_than_the_reference_counts_what_can_be_reported(
 
 def test_a_scene_that_fails_is_studied_around_finer_settings(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """It runs with steps of a quarter: 0.0025 s, elements of a quarter, too. What failed is a row."""
-    found = {"heave: top tension": KeyResult("heave", "top tension", "N", 100.0, 0.0)}
+    results = {"heave: top tension": KeyResult("heave", "top tension", "N", 100.0, 0.0)}
 
     def outcome(factors: Factors, scene: Scene) -> PointOutcome:
         if scene.line.element_count < 4 * 36:
             return PointOutcome(factors, 3, "folded", 1.0, True)
-        return PointOutcome(factors, 0, "", 1.0, True, 1, found)
+        return PointOutcome(factors, 0, "", 1.0, True, 1, results)
 
     def compute(scenes: Mapping[Factors, Scene], runs: Path, jobs: int, on_end: Any) -> list[PointOutcome]:
         return [outcome(*each) for each in scenes.items()]
@@ -191,14 +191,14 @@ def test_a_scene_that_fails_with_finer_settings_too_ends_it(monkeypatch: pytest.
 
 def test_numbers_are_json_and_the_page_stands_alone(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     made = manufactured(monkeypatch, tmp_path / "s", both)
-    reported = json.loads((tmp_path / "s" / "study.json").read_text(encoding="utf-8"))
-    assert reported["cheapest"] == {"0.01": [1.0, 2.0], "0.001": [2.0, 8.0]}
-    assert reported["quantities"]["heave: top tension"]["knobs"]["time_step"]["order"] == pytest.approx(2.0)
-    assert len(reported["points"]) == len(made.outcomes)
+    numbers = json.loads((tmp_path / "s" / "study.json").read_text(encoding="utf-8"))
+    assert numbers["cheapest"] == {"0.01": [1.0, 2.0], "0.001": [2.0, 8.0]}
+    assert numbers["quantities"]["heave: top tension"]["knobs"]["time_step"]["order"] == pytest.approx(2.0)
+    assert len(numbers["points"]) == len(made.outcomes)
     page = (tmp_path / "s" / "study.html").read_text(encoding="utf-8")
     assert "data:image/svg+xml;base64," in page
     assert "http" not in page
-    assert all(sentence[1:] in page.replace("&#x27;", "'") for sentence in reported["words"])
+    assert all(sentence[1:] in page.replace("&#x27;", "'") for sentence in numbers["words"])
 
 
 def test_bad_input_is_refused(tmp_path: Path) -> None:
@@ -246,13 +246,13 @@ def test_how_a_point_ends(
         assert not list(tmp_path.glob("*/*"))
         return
     for _ in range(2):
-        (found,) = compute(point, tmp_path, 1, lambda outcome, before: known_before.append(before))
-        assert (found.status, found.reason, found.alone) == (137 if status == -9 else status, reason, True)
-        assert found.cpu == pytest.approx(cpu, nan_ok=True)
+        (result,) = compute(point, tmp_path, 1, lambda outcome, before: known_before.append(before))
+        assert (result.status, result.reason, result.alone) == (137 if status == -9 else status, reason, True)
+        assert result.cpu == pytest.approx(cpu, nan_ok=True)
     assert known_before == [False, not again]
     (folder,) = (entry for entry in tmp_path.iterdir() if not entry.name.startswith("."))
-    left = {"case.json", "said.txt", "scene.yaml"} | ({"summary.json"} if status >= 0 else set())
-    assert {entry.name for entry in folder.iterdir()} == left
+    files = {"case.json", "said.txt", "scene.yaml"} | ({"summary.json"} if status >= 0 else set())
+    assert {entry.name for entry in folder.iterdir()} == files
 
 
 def test_a_scene_that_differs_is_another_run(tmp_path: Path) -> None:
@@ -283,15 +283,15 @@ def test_a_study_that_was_interrupted_goes_on(tmp_path: Path) -> None:
     assert line_with(said, "SIGTERM", "in a study", "call again") == said.splitlines()[0]
     before = {path: path.stat().st_mtime_ns for path in outcomes}
     with _started(tmp_path) as again:
-        reported, said = again.communicate(timeout=HANGS)
+        output, said = again.communicate(timeout=HANGS)
     assert again.returncode == 0, said
     assert {path: path.stat().st_mtime_ns for path in outcomes} == before
-    assert reported.count("computed before") >= len(outcomes)
-    found = json.loads((tmp_path / "small-study" / "study.json").read_text(encoding="utf-8"))
-    tension = found["quantities"]["hang: top tension"]
+    assert output.count("computed before") >= len(outcomes)
+    data = json.loads((tmp_path / "small-study" / "study.json").read_text(encoding="utf-8"))
+    tension = data["quantities"]["hang: top tension"]
     assert tension["error"] < 0.02
     assert tension["knobs"]["elements"]["order"] == pytest.approx(4.0, abs=1.5)
-    assert {tuple(p["factors"].values()): p["timed_alone"] for p in found["points"][:3]} == {
+    assert {tuple(p["factors"].values()): p["timed_alone"] for p in data["points"][:3]} == {
         (0.5,): True, (1.0,): True, (2.0,): False,
     }  # fmt: skip
     assert not list((tmp_path / "small-study").rglob("*.nc"))
@@ -301,9 +301,9 @@ def _first_outcomes(folder: Path, process: subprocess.Popen[str]) -> list[Path]:
     """What has been computed as soon as there is something."""
     since = time.monotonic()
     while time.monotonic() - since < HANGS and process.poll() is None:
-        found = list(folder.glob("small-study/points/*/case.json"))
-        if found:
-            return found
+        files = list(folder.glob("small-study/points/*/case.json"))
+        if files:
+            return files
         time.sleep(0.05)
     raise AssertionError(process.communicate())
 

@@ -98,16 +98,16 @@ def slid(line: Line, move: Array) -> State:
 
 def slide(line: Line, friction: CoulombFriction, moves: Array) -> tuple[Array, float, float]:
     """Force on the riser at the last of some moves (n, 3), the energy taken and that dissipated."""
-    taken, lost = 0.0, 0.0
+    work, lost = 0.0, 0.0
     force: Array = np.zeros(3)
     for move in moves:
         rest, state = slid(line, np.zeros(3)), slid(line, move)
         force = friction.force_on_riser(state)
         lost += friction.work(rest, state).dissipated
-        taken -= float(force @ move)
+        work -= float(force @ move)
         friction.commit(state)
         line.commit(state)
-    return force, taken, lost
+    return force, work, lost
 
 
 @both_dimensions
@@ -144,13 +144,13 @@ def test_back_and_forth_it_takes_four_slides(dimension: int) -> None:
     slide(line, friction, np.array([step] * 50))
     before, way = friction.energy(slid(line, np.zeros(3))).potential, friction.slip()
     cycle = np.concatenate([np.tile(-step, (100, 1)), np.tile(step, (100, 1))])
-    force, taken, lost = slide(line, friction, cycle)
+    force, work, lost = slide(line, friction, cycle)
     limit = AXIAL * PRESSED * 10.0
     assert friction.slip() - way == pytest.approx(np.full(line.nodes, 4.0 * (A - m)))
     assert force[0] == pytest.approx(-limit)
     assert friction.energy(slid(line, np.zeros(3))).potential == pytest.approx(before)
     assert before == pytest.approx(0.5 * limit * m)
-    assert lost == pytest.approx(taken)
+    assert lost == pytest.approx(work)
     assert lost == pytest.approx(4.0 * limit * (A - m), rel=0.03)  # the force at the end of each step of m/5 counts
 
 
@@ -198,9 +198,9 @@ def test_arc_below_the_seabed() -> None:
     """Of a pipe above it, on it, sunk in by a quarter of its diameter (a third of a turn), by half and more."""
     D, clay = 0.4, Adhesion(0.5, Strength(2.0e3, 3.0e3), 0.4)
     z = np.array([-0.1, 0.0, 0.25 * D, 0.5 * D, 0.7 * D])
-    found, slope = np.transpose([adhesion_at(clay, depth) for depth in z])
+    adhesion, slope = np.transpose([adhesion_at(clay, depth) for depth in z])
     arc = np.pi * D * np.array([0.0, 0.0, 1.0 / 3.0, 0.5, 0.5])
-    np.testing.assert_allclose(found, 0.5 * (2.0e3 + 3.0e3 * np.maximum(z, 0.0)) * arc, rtol=1e-12)
+    np.testing.assert_allclose(adhesion, 0.5 * (2.0e3 + 3.0e3 * np.maximum(z, 0.0)) * arc, rtol=1e-12)
     deeper, shallower = (np.array([adhesion_at(clay, depth + h)[0] for depth in z]) for h in (1e-7, -1e-7))
     inside = [0, 2, 4]
     np.testing.assert_allclose(slope[inside], (deeper - shallower)[inside] / 2e-7, rtol=1e-7)
@@ -210,17 +210,17 @@ def test_arc_below_the_seabed() -> None:
 @both_dimensions
 def test_dragged_along_clay_it_resists_with_its_adhesion(dimension: int) -> None:
     """su over the arc below the seabed, here less than friction; mobilised over that over k."""
-    held = Adhesion(0.6, Strength(1.0e3, 2.0e4), 0.3)
-    line, friction = straight(dimension, held)
+    adhesion = Adhesion(0.6, Strength(1.0e3, 2.0e4), 0.3)
+    line, friction = straight(dimension, adhesion)
     arc = 2.0 * 0.3 * np.arcsin(np.sqrt(DEPTH / 0.3))
     most = 0.6 * 1.2e3 * arc
     assert most < AXIAL * PRESSED
     mobilised = most / (LATERAL * PRESSED) * MOBILISATION
     force, _, _ = slide(line, friction, np.array([[0.5 * mobilised, 0.0, 0.0]]))
     assert force == pytest.approx([-0.5 * most * 10.0, 0.0, 0.0])
-    force, taken, lost = slide(line, friction, np.array([[mobilised, 0.0, 0.0]] * 3))
+    force, work, lost = slide(line, friction, np.array([[mobilised, 0.0, 0.0]] * 3))
     assert force == pytest.approx([-most * 10.0, 0.0, 0.0])
-    assert lost == pytest.approx(taken + 0.5 * most * 10.0 * (0.25 - 1.0) * mobilised)
+    assert lost == pytest.approx(work + 0.5 * most * 10.0 * (0.25 - 1.0) * mobilised)
 
 
 #: Below friction at some stations of the sample, above it at others.
@@ -260,10 +260,10 @@ def test_tangent_is_the_derivative_of_the_residual(
 
 @both_dimensions
 def test_adhesion_limits_some_of_the_sample(dimension: int) -> None:
-    (held, state), (free, _) = (rubbing(dimension, "profile", 1.0e7, clay) for clay in (CLAY, None))
-    for friction in (free, held):
+    (limited, state), (free, _) = (rubbing(dimension, "profile", 1.0e7, clay) for clay in (CLAY, None))
+    for friction in (free, limited):
         friction.energy(state)
-    most, least = (np.linalg.norm(f.kernel_data().resistance, axis=2) for f in (free, held))
+    most, least = (np.linalg.norm(f.kernel_data().resistance, axis=2) for f in (free, limited))
     lower = least < 0.99 * most
     assert lower.any()
     assert not lower.all()

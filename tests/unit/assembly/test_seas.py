@@ -34,9 +34,9 @@ def scene(waves: dict[str, Any], folder: Path = Path(), **more: Any) -> Scene:
 
 
 def sea(waves: dict[str, Any], folder: Path = Path()) -> Components:
-    found = components_of(scene(waves, folder))
-    assert found is not None
-    return found
+    components = components_of(scene(waves, folder))
+    assert components is not None
+    return components
 
 
 def energy(waves: Components) -> Array:
@@ -116,8 +116,8 @@ def test_frequencies_of_a_given_spectrum_have_its_energy(tmp_path: Path) -> None
     given = sea({"spectrum": {"file": "s.csv", "components": 60}}, tmp_path)
     assert energy(given).sum() == pytest.approx(0.5 * 0.2 * 5.0, rel=1e-12)
     w = 2.0 * np.pi * np.array([0.1, 0.2, 0.3])
-    found = spectra.quantiles_of_spectrum(np.array([0.0, 0.125, 0.5, 0.875, 1.0]), w, np.array([0.0, 20.0, 0.0]))
-    np.testing.assert_allclose(found / (2.0 * np.pi), [0.1, 0.15, 0.2, 0.25, 0.3], rtol=1e-12)
+    frequencies = spectra.quantiles_of_spectrum(np.array([0.0, 0.125, 0.5, 0.875, 1.0]), w, np.array([0.0, 20.0, 0.0]))
+    np.testing.assert_allclose(frequencies / (2.0 * np.pi), [0.1, 0.15, 0.2, 0.25, 0.3], rtol=1e-12)
     assert (np.diff(given.frequency) > 0.0).all()
     model = scene({"spectrum": {"file": "s.csv"}}, tmp_path).water
     assert model is not None
@@ -136,13 +136,13 @@ def test_a_record_comes_back_where_it_was_taken(tmp_path: Path) -> None:
     record = {"file": "eta.csv", "position": [12.0, -5.0], "direction_deg": 20.0}
     waves = sea({"record": record}, tmp_path)
     flow, place = Sea(0.0, [linear_waves(waves, DEPTH, 0.0)]), np.array([[12.0, -5.0, 0.0]])
-    found = [flow(time, place).immersion[0] for time in t]
+    elevation = [flow(time, place).immersion[0] for time in t]
     nyquist = np.mean(eta * (-1.0) ** np.arange(64)) * (-1.0) ** np.arange(64)
-    np.testing.assert_allclose(found, eta - eta.mean() - nyquist, atol=1e-9)
+    np.testing.assert_allclose(elevation, eta - eta.mean() - nyquist, atol=1e-9)
 
 
 @pytest.mark.parametrize(
-    ("waves", "reported"),
+    ("waves", "message"),
     [
         ({"jonswap": SEA | {"spreading": {"s": 10.0, "directions": 8}}}, "components: value 60: must be a multiple"),
         ({"jonswap": SEA | {"spreading": {"s": 10.0, "directions": 3}}}, r"spreading\.directions: value 3"),
@@ -156,13 +156,13 @@ def test_a_record_comes_back_where_it_was_taken(tmp_path: Path) -> None:
         ({"record": {"file": "short.csv", "shortest_period": 5.0}}, "0 waves lie between"),
     ],
 )
-def test_mistakes(waves: dict[str, Any], reported: str, tmp_path: Path) -> None:
+def test_mistakes(waves: dict[str, Any], message: str, tmp_path: Path) -> None:
     (tmp_path / "bad.csv").write_text("frequency [Hz], density [m2/Hz]\n0.2, 1\n0.1, 1\n")
     times = [0.05 * n for n in range(16)]
     for name, t in {"short": times, "uneven": [*times[:-1], 1.0]}.items():
         rows = "".join(f"{a:.4f}, {math.sin(9.0 * a) * 0.01:.6f}\n" for a in t)
         (tmp_path / f"{name}.csv").write_text("t [s], elevation [m]\n" + rows)
-    with pytest.raises(SceneError, match=reported):
+    with pytest.raises(SceneError, match=message):
         scene(waves, tmp_path)
 
 

@@ -95,8 +95,8 @@ def test_soil_without_a_mesh_has_automatic_cells() -> None:
     scene = touchdown(LAY)
     scene["soil"].pop("mesh")
     scene["contact"] = {"method": "surface"}
-    found, asked = (scene_from_mapping(scene | {"soil": scene["soil"] | more}) for more in ({}, {"mesh": "auto"}))
-    assert sized(found) == sized(asked)
+    default, asked = (scene_from_mapping(scene | {"soil": scene["soil"] | more}) for more in ({}, {"mesh": "auto"}))
+    assert sized(default) == sized(asked)
 
 
 def test_a_trench_needs_sizes_of_tetrahedra() -> None:
@@ -108,14 +108,15 @@ def test_a_trench_needs_sizes_of_tetrahedra() -> None:
 def test_the_block_lies_around_the_touchdown_points() -> None:
     """Of the catenary at rest: a parabola nearly, x_end - x_0 = (H/w) arcosh(1 + w z/H)."""
     scene = automatic(LAY)
-    found = forecast(scene, elements_of(scene), list(end_places(scene, sea_of(scene))))
-    assert found is not None
+    predicted = forecast(scene, elements_of(scene), list(end_places(scene, sea_of(scene))))
+    assert predicted is not None
     w = float(elements_of(scene).weight[0])
-    assert len(found.points) == 1
-    assert found.points[0, 0] == pytest.approx(22.5 - found.H / w * np.arccosh(1.0 + w * 14.85 / found.H), abs=0.05)
+    assert len(predicted.points) == 1
+    H = predicted.H
+    assert predicted.points[0, 0] == pytest.approx(22.5 - H / w * np.arccosh(1.0 + w * 14.85 / H), abs=0.05)
     block, _, _ = chosen(scene)
-    assert block.x[0] < found.points[0, 0] < block.x[1]
-    assert np.mean(block.x) == pytest.approx(found.points[0, 0], abs=0.1)
+    assert block.x[0] < predicted.points[0, 0] < block.x[1]
+    assert np.mean(block.x) == pytest.approx(predicted.points[0, 0], abs=0.1)
     assert block.y == pytest.approx((-2.4, 2.4))
     assert block.depth == pytest.approx(2.4)
 
@@ -123,10 +124,10 @@ def test_the_block_lies_around_the_touchdown_points() -> None:
 def test_the_block_follows_the_reach_of_the_motion() -> None:
     """By 1.25 times what catenaries between the moved ends say."""
     moving = automatic(LAY, heave(3.0, amplitude=1.0))
-    found = forecast(moving, elements_of(moving), list(end_places(moving, sea_of(moving))))
-    assert found is not None
+    predicted = forecast(moving, elements_of(moving), list(end_places(moving, sea_of(moving))))
+    assert predicted is not None
     still, block = chosen(automatic(LAY))[0], chosen(moving)[0]
-    reach = found.points[:, 0] - found.points[0, 0]
+    reach = predicted.points[:, 0] - predicted.points[0, 0]
     assert reach.min() < -0.3
     assert reach.max() > 0.3
     assert np.subtract(block.x, still.x) == pytest.approx([1.25 * reach.min(), 1.25 * reach.max()], abs=0.1)
@@ -135,13 +136,13 @@ def test_the_block_follows_the_reach_of_the_motion() -> None:
 def test_cells_of_a_block_grow_where_the_riser_does_not_touch_down() -> None:
     """From three bending lengths before the touchdown points of the motion to a cell beyond; sections stay alike."""
     scene = automatic(LAY, heave(3.0, amplitude=1.0))
-    found = forecast(scene, elements_of(scene), list(end_places(scene, sea_of(scene))))
-    assert found is not None
-    assert found.ahead == pytest.approx([1.0, 0.0])
-    first = found.points[0, 0]
-    reach = first + 1.25 * (found.points[:, 0] - first)
+    predicted = forecast(scene, elements_of(scene), list(end_places(scene, sea_of(scene))))
+    assert predicted is not None
+    assert predicted.ahead == pytest.approx([1.0, 0.0])
+    first = predicted.points[0, 0]
+    reach = first + 1.25 * (predicted.points[:, 0] - first)
     low, high = reach.min(), reach.max()
-    bending = np.sqrt(elements_of(scene).EI_y.max() / found.H)
+    bending = np.sqrt(elements_of(scene).EI_y.max() / predicted.H)
     block, _, sizes = chosen(scene)
     assert sizes.touchdown is not None
     assert sizes.touchdown == pytest.approx((low - 3.0 * bending, high + sizes.along), abs=0.06)
@@ -159,10 +160,10 @@ def test_a_riser_that_comes_down_the_other_way_has_its_cells_there() -> None:
 def test_a_chain_has_fine_cells_for_its_touchdown_point_at_rest() -> None:
     """Nothing bends and nothing moves: three cells before it, as far as there is a block, and one beyond."""
     scene = automatic(LAY, line_types__flexible__EI=0.0)
-    found = forecast(scene, elements_of(scene), list(end_places(scene, sea_of(scene))))
-    assert found is not None
+    predicted = forecast(scene, elements_of(scene), list(end_places(scene, sea_of(scene))))
+    assert predicted is not None
     block, _, sizes = chosen(scene)
-    at = found.points[0, 0]
+    at = predicted.points[0, 0]
     assert sizes.touchdown == pytest.approx((max(at - 3.0 * sizes.along, block.x[0]), at + sizes.along), abs=0.06)
 
 
@@ -175,14 +176,14 @@ def test_a_riser_along_y_has_its_block_and_cells_along_y() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "reported"),
+    ("changes", "message"),
     [
         ({"riser__end": "free", "riser__initial": "straight"}, "soil.block: auto: the touchdown point is not known"),
         ({"riser__end__position": [18.0, 13.5, 15.0]}, "soil.mesh: auto: cells are long along x or y"),
     ],
 )
-def test_where_nothing_can_be_chosen_one_line_says_so(changes: Mapping, reported: str) -> None:
-    with pytest.raises(SceneError, match=reported) as caught:
+def test_where_nothing_can_be_chosen_one_line_says_so(changes: Mapping, message: str) -> None:
+    with pytest.raises(SceneError, match=message) as caught:
         sized(automatic(LAY, **changes))
     assert "\n" not in str(caught.value)
     assert "give " in str(caught.value)

@@ -53,8 +53,8 @@ def test_each_quantity_is_the_median_of_the_programs() -> None:
 
 def test_tensions_err_in_parts_of_the_greatest_at_their_end() -> None:
     agreed = {"top min": 10.0, "top max": 100.0, MOMENT: 5.0}
-    found = errors({"top min": 11.0, "top max": 100.0, MOMENT: 6.0}, agreed)
-    assert found == pytest.approx({"top min": 0.01, "top max": 0.0, MOMENT: 0.2})
+    shares = errors({"top min": 11.0, "top max": 100.0, MOMENT: 6.0}, agreed)
+    assert shares == pytest.approx({"top min": 0.01, "top max": 0.0, MOMENT: 0.2})
 
 
 def test_finest_runs_are_as_far_apart_as_their_worst_pair() -> None:
@@ -75,8 +75,8 @@ def travelling(case: Case) -> Record:
 
 
 def test_quantities_are_found_between_records_and_stations() -> None:
-    found = quantities(TANK, travelling(TANK))
-    assert found == pytest.approx(
+    values = quantities(TANK, travelling(TANK))
+    assert values == pytest.approx(
         {"top min": 1900.0, "top max": 2100.0, "bottom min": 150.0, "bottom max": 250.0, MOMENT: 7.2, RANGE: 4.0},
         rel=1e-4,
     )

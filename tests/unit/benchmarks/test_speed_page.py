@@ -41,6 +41,6 @@ def test_cases_and_iterations_are_those_of_the_benchmark() -> None:
     stage.walk(riser_only.RAMP + 1)
     stage.iterations, began = 0, stage.stepper.now.t
     stage.walk(riser_only.STEPS)
-    taken = (stage.stepper.now.t - began) / riser_only.STEPS
-    assert table[case][1:3] == [f"{taken:.3g}", f"{stage.iterations / riser_only.STEPS:.2f}"]
+    iterations = (stage.stepper.now.t - began) / riser_only.STEPS
+    assert table[case][1:3] == [f"{iterations:.3g}", f"{stage.iterations / riser_only.STEPS:.2f}"]
     stage.destroy()

@@ -85,9 +85,9 @@ def test_what_held_a_body_has_its_reaction_at_first_and_nothing_at_last(turns: b
     made, reaction = body(turns), np.array([3.0, -2.0, 5.0, 4.0, -1.0, 2.0])
     part = Release(made, reaction)
     for t, share in ((0.0, -1.0), (0.5, -0.5), (1.0, 0.0)):
-        found = Forces.zeros(made.size)
-        part.residual(State(t, *np.zeros((3, made.size))), found)
-        assert found.force == pytest.approx(share * reaction, abs=1e-9)
+        forces = Forces.zeros(made.size)
+        part.residual(State(t, *np.zeros((3, made.size))), forces)
+        assert forces.force == pytest.approx(share * reaction, abs=1e-9)
 
 
 def test_inertia_of_a_body_that_is_thrown() -> None:
@@ -103,9 +103,9 @@ def test_inertia_of_a_body_that_is_thrown() -> None:
     W, A, J = state.v[3:], state.a[3:], np.diag(given.inertia)
     force = given.mass * (state.a[:3] + np.cross(A, c) + np.cross(W, np.cross(W, c)))
     moment = np.cross(c, force) + J @ A + np.cross(W, J @ W)
-    found = Forces.zeros(6)
-    part.residual(state, found)
-    assert found.inertia == pytest.approx(np.concatenate([force, moment]), rel=1e-12)
+    forces = Forces.zeros(6)
+    part.residual(state, forces)
+    assert forces.inertia == pytest.approx(np.concatenate([force, moment]), rel=1e-12)
 
 
 def test_added_mass_makes_no_energy() -> None:
@@ -125,11 +125,11 @@ def test_added_mass_makes_no_energy() -> None:
 
 def test_drag_of_a_point_in_a_current() -> None:
     made = MovingBody("clump", np.array([0.0, 0.0, -20.0]), False, 1.0)
-    given, found = properties(turns=False), Forces.zeros(6)
-    BodyDrag(made, given, sea(), RHO, 0.0, 0.0, still=False).residual(State.at_rest(0.0, 6), found)
+    given, forces = properties(turns=False), Forces.zeros(6)
+    BodyDrag(made, given, sea(), RHO, 0.0, 0.0, still=False).residual(State.at_rest(0.0, 6), forces)
     u = np.array([0.3, -0.1, 0.0])
-    assert found.force[:3] == pytest.approx(-0.5 * RHO * 0.8 * np.linalg.norm(u) * u, rel=1e-12)
-    assert not found.force[3:].any()
+    assert forces.force[:3] == pytest.approx(-0.5 * RHO * 0.8 * np.linalg.norm(u) * u, rel=1e-12)
+    assert not forces.force[3:].any()
 
 
 def test_a_sphere_is_wet_by_its_cap() -> None:

@@ -47,11 +47,11 @@ def rubbing(contact: BodyContact, mu: float) -> BodyFriction:
 
 
 def residual(part: Part, state: State) -> Array:
-    found = Forces.zeros(state.u.size)
-    part.residual(state, found)
-    assert not found.force.any()
-    assert not found.inertia.any()
-    return found.end
+    forces = Forces.zeros(state.u.size)
+    part.residual(state, forces)
+    assert not forces.force.any()
+    assert not forces.inertia.any()
+    return forces.end
 
 
 @pytest.mark.parametrize("ground", [slope(-4.9), humps(-4.9)], ids=["slope", "humps"])
@@ -84,10 +84,10 @@ def test_the_tangent_of_friction_is_exact(ground: Ground, mu: float) -> None:
 def test_forces_are_the_slope_of_the_energy() -> None:
     made = body()
     part, state, h = touching(made, humps(-4.9)), shaken(made, size=0.1), 1e-5
-    found = residual(part, state)
+    forces = residual(part, state)
     for i, direction in enumerate(np.eye(6)):
         there, back = (part.energy(State(0.6, state.u + s * direction, state.v, state.a)) for s in (h, -h))
-        assert (there.potential - back.potential) / (2.0 * h) == pytest.approx(found[i], rel=1e-6, abs=1e-2)
+        assert (there.potential - back.potential) / (2.0 * h) == pytest.approx(forces[i], rel=1e-6, abs=1e-2)
 
 
 def test_a_sphere_sinks_in_by_its_depth_below_the_seabed() -> None:
@@ -109,8 +109,8 @@ def test_a_sphere_sinks_in_by_its_depth_below_the_seabed() -> None:
 def test_a_foot_beside_the_origin_turns_the_body() -> None:
     made = MovingBody("sled", np.array([0.0, 0.0, -9.0]), True, 1.0)
     part = BodyContact(made, np.array([[2.0, 0.0, -1.1]]), 0.0, 1.0, Plane.level(-10.0), Penalty(1.0e4))
-    found = -residual(part, State.at_rest(0.0, 6))
-    assert found == pytest.approx([0.0, 0.0, 1.0e3, 0.0, -2.0e3, 0.0])  # moment r x f
+    forces = -residual(part, State.at_rest(0.0, 6))
+    assert forces == pytest.approx([0.0, 0.0, 1.0e3, 0.0, -2.0e3, 0.0])  # moment r x f
 
 
 def test_feet_share_the_stiffness() -> None:

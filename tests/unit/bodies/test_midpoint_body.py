@@ -53,15 +53,15 @@ def free_step(part: MidpointBodyInertia, start: State, dt: float) -> State:
 def flown(made: MovingBody, M: Array, v: Array, dt: float, steps: int) -> tuple[Array, Array, Array]:
     """Linear and angular momentum (steps + 1, 3) and kinetic energy of a free body, at first and after each step."""
     part, start = begun(made, M, v)
-    told = [(*of_body(made, M, v), part.energy(start).kinetic)]
+    history = [(*of_body(made, M, v), part.energy(start).kinetic)]
     for _ in range(steps):
         end = free_step(part, start, dt)
         energy = part.energy(end).kinetic
         part.commit(end)
         made.commit(end)
         start = State(end.t, np.zeros(6), end.v, np.zeros(6))
-        told.append((*of_body(made, M, end.v), energy))
-    linear, angular, energies = (np.array(each) for each in zip(*told, strict=True))
+        history.append((*of_body(made, M, end.v), energy))
+    linear, angular, energies = (np.array(each) for each in zip(*history, strict=True))
     return linear, angular, energies
 
 

@@ -52,11 +52,11 @@ def test_data_are_read_in_their_units(tmp_path: Path) -> None:
     ],
 )
 def test_bad_data_are_refused_in_one_line(tmp_path: Path, text: str, said: str) -> None:
-    with pytest.raises(SceneError) as reported:
+    with pytest.raises(SceneError) as error:
         read_resistance(written(tmp_path, text))
-    assert said in str(reported.value)
-    assert "data.csv" in str(reported.value)
-    assert "\n" not in str(reported.value)
+    assert said in str(error.value)
+    assert "data.csv" in str(error.value)
+    assert "\n" not in str(error.value)
 
 
 @pytest.mark.parametrize(
@@ -148,9 +148,9 @@ def test_intervals_cover_the_truth_as_often_as_they_say(relative: bool) -> None:
     clean, covered = power_law(ratio, truth), np.zeros(2)
     for seed in range(200):
         noise = 0.05 * np.random.default_rng(seed).normal(size=40) * (clean if relative else 4.0)
-        found = fit(lambda given: power_law(ratio, given), clean + noise, (A, B), relative=relative)
-        assert found.converged
-        for n, each in enumerate(found.parameters):
+        result = fit(lambda given: power_law(ratio, given), clean + noise, (A, B), relative=relative)
+        assert result.converged
+        for n, each in enumerate(result.parameters):
             low, high = each.interval
             covered[n] += low <= truth[each.parameter.name] <= high
     assert np.abs(covered - 190).max() <= 3 * np.sqrt(200 * 0.05 * 0.95), covered
@@ -159,16 +159,16 @@ def test_intervals_cover_the_truth_as_often_as_they_say(relative: bool) -> None:
 def test_what_the_data_do_not_tell_is_said() -> None:
     both = FitParameter("c", 1.0, 20.0, 2.0)
     ratio = np.linspace(0.01, 0.5, 40)
-    found = fit(lambda g: g["a"] * g["c"] * ratio, 12.0 * ratio, (A, both))
-    assert [each.known for each in found.parameters] == [False, False]
+    result = fit(lambda g: g["a"] * g["c"] * ratio, 12.0 * ratio, (A, both))
+    assert [each.known for each in result.parameters] == [False, False]
     assert np.isinf(deviations(np.ones((2, 2)), np.ones(2))).all()
 
 
 def test_a_bound_is_reported() -> None:
     ratio = np.linspace(0.01, 0.5, 40)
-    found = fit(lambda g: g["a"] * ratio, 30.0 * ratio, (A,))
-    assert found.parameters[0].at_bound
-    assert found.parameters[0].value == pytest.approx(20.0, rel=1e-2)
+    result = fit(lambda g: g["a"] * ratio, 30.0 * ratio, (A,))
+    assert result.parameters[0].at_bound
+    assert result.parameters[0].value == pytest.approx(20.0, rel=1e-2)
 
 
 def test_a_noisy_curve_gives_its_strength_back(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -179,8 +179,8 @@ def test_a_noisy_curve_gives_its_strength_back(tmp_path: Path, capsys: pytest.Ca
     V = path.at_points(PipeSegment(BaseScene.read(SCENE, COARSE)).resistance({"soil.law.su": 4.0e3}, path, table))
     noisy = V * (1.0 + 0.05 * np.random.default_rng(3).normal(size=len(w)))
     data = written(tmp_path, "w [m], V [N/m]\n" + "\n".join(f"{a}, {b}" for a, b in zip(w, noisy, strict=True)))
-    found = calibrate(data, SCENE, ["soil.law.su=1e3:1e4"], tmp_path / "out", overrides=COARSE, relative=True)
-    (su,) = found.parameters
+    result = calibrate(data, SCENE, ["soil.law.su=1e3:1e4"], tmp_path / "out", overrides=COARSE, relative=True)
+    (su,) = result.parameters
     assert su.value == pytest.approx(4.0e3, rel=0.02)
     assert su.interval[0] < 4.0e3 < su.interval[1]
     assert su.interval[1] - su.interval[0] < 0.05 * su.value

@@ -40,7 +40,7 @@ def cases(folder: Path, text: str, waves: str = JONSWAP) -> list[Case]:
 
 
 def test_all_short_forms_together(tmp_path: Path) -> None:
-    found = cases(
+    all_cases = cases(
         tmp_path,
         """
         sea_states: {mild: {Hs: 0.5}, storm: {Hs: 2.0, Tp: 8.0, water.surface_level: 13.0}}
@@ -53,11 +53,11 @@ def test_all_short_forms_together(tmp_path: Path) -> None:
         product: {line_types.pipe.EI: [150.0]}
         """,
     )
-    assert len(found) == 2 * 2 * 3 * 2 * 3
-    first, last = found[0], found[-1]
+    assert len(all_cases) == 2 * 2 * 3 * 2 * 3
+    first, last = all_cases[0], all_cases[-1]
     assert first.name == "mild-direction=90-near-lower-EI=150-seed=1"
     assert last.name == "storm-direction=180.5-far-upper-EI=150-seed=3"
-    assert [case.name[-1] for case in found[:4]] == ["1", "2", "3", "1"]
+    assert [case.name[-1] for case in all_cases[:4]] == ["1", "2", "3", "1"]
     at = {"vessel.offset": last.values["vessel.offset"]}
     assert at["vessel.offset"] == pytest.approx([1.2, 1.6, 0.0])
     assert last.values == at | {
@@ -77,10 +77,10 @@ def test_all_short_forms_together(tmp_path: Path) -> None:
 
 
 def test_near_is_towards_the_other_end_and_mean_is_no_offset(tmp_path: Path) -> None:
-    found = {case.name: case.values["vessel.offset"] for case in cases(tmp_path, "offsets: 5")}
-    assert found["near"] == pytest.approx([-3.0, -4.0, 0.0])
-    assert found["mean"] == [0.0, 0.0, 0.0]
-    assert found["far"] == pytest.approx([3.0, 4.0, 0.0])
+    all_cases = {case.name: case.values["vessel.offset"] for case in cases(tmp_path, "offsets: 5")}
+    assert all_cases["near"] == pytest.approx([-3.0, -4.0, 0.0])
+    assert all_cases["mean"] == [0.0, 0.0, 0.0]
+    assert all_cases["far"] == pytest.approx([3.0, 4.0, 0.0])
 
 
 def test_offsets_are_a_share_of_the_water_depth(tmp_path: Path) -> None:
@@ -100,8 +100,8 @@ def test_near_is_towards_the_end_where_the_start_hangs_from_the_vessel(tmp_path:
 
 
 def test_offsets_by_name_are_those_given(tmp_path: Path) -> None:
-    found = cases(tmp_path, "offsets: {north: [0, 2.5], low: [1.0, 0.0, -0.5]}")
-    assert [(case.name, case.values["vessel.offset"]) for case in found] == [
+    all_cases = cases(tmp_path, "offsets: {north: [0, 2.5], low: [1.0, 0.0, -0.5]}")
+    assert [(case.name, case.values["vessel.offset"]) for case in all_cases] == [
         ("north", [0.0, 2.5, 0.0]),
         ("low", [1.0, 0.0, -0.5]),
     ]
@@ -109,9 +109,9 @@ def test_offsets_by_name_are_those_given(tmp_path: Path) -> None:
 
 def test_seeds_in_a_list_and_of_other_spectra(tmp_path: Path) -> None:
     waves = "{pierson_moskowitz: {Hs: 1.0, Tp: 6.0, components: 10}}"
-    found = cases(tmp_path, "seeds: [7, 11]", waves)
-    assert [case.values for case in found] == [{"water.waves.pierson_moskowitz.seed": n} for n in (7, 11)]
-    assert [case.group for case in found] == ["all seeds"] * 2
+    all_cases = cases(tmp_path, "seeds: [7, 11]", waves)
+    assert [case.values for case in all_cases] == [{"water.waves.pierson_moskowitz.seed": n} for n in (7, 11)]
+    assert [case.group for case in all_cases] == ["all seeds"] * 2
 
 
 def test_regular_waves_have_states_and_directions(tmp_path: Path) -> None:
@@ -124,9 +124,9 @@ def test_regular_waves_have_states_and_directions(tmp_path: Path) -> None:
 
 def test_sea_states_of_a_csv_file(tmp_path: Path) -> None:
     (tmp_path / "states.csv").write_text("name, Hs, Tp\nmild, 0.5, 5.0\n, 1.5, 7.0\n", encoding="utf-8")
-    found = cases(tmp_path, "sea_states: states.csv")
-    assert [case.name for case in found] == ["mild", "Hs=1.5-Tp=7.0"]
-    assert [[*case.values.values()] for case in found] == [[0.5, 5.0], [1.5, 7.0]]
+    all_cases = cases(tmp_path, "sea_states: states.csv")
+    assert [case.name for case in all_cases] == ["mild", "Hs=1.5-Tp=7.0"]
+    assert [[*case.values.values()] for case in all_cases] == [[0.5, 5.0], [1.5, 7.0]]
 
 
 def test_rows_of_a_table_that_differ_in_their_seed_are_one_group(tmp_path: Path) -> None:

@@ -24,7 +24,7 @@ def names(folder: Path, text: str) -> list[str]:
 
 
 def test_every_combination_is_a_case(tmp_path: Path) -> None:
-    found = cases(
+    all_cases = cases(
         tmp_path,
         """
         table:
@@ -37,18 +37,18 @@ def test_every_combination_is_a_case(tmp_path: Path) -> None:
             far: {riser.end.position.0: 9.5, title: far out}
         """,
     )
-    assert [case.name for case in found] == [
+    assert [case.name for case in all_cases] == [
         f"{row}-{EI}-{offset}"
         for row in ("light", "mass=30-rotation=fixed") for EI in ("EI=100", "EI=250.5") for offset in ("near", "far")
     ]  # fmt: skip
-    assert found[-1].values == {
+    assert all_cases[-1].values == {
         "line_types.pipe.mass": 30.0,
         "riser.start.rotation": "fixed",
         "line_types.pipe.EI": 250.5,
         "riser.end.position.0": 9.5,
         "title": "far out",
     }
-    assert len({case.variant.key for case in found}) == 8
+    assert len({case.variant.key for case in all_cases}) == 8
 
 
 def test_a_case_is_the_scene_that_run_would_make_of_it(tmp_path: Path) -> None:
@@ -68,8 +68,8 @@ def test_rows_of_a_csv_file(tmp_path: Path) -> None:
     """An empty cell leaves the base's value; a cell is read as --set reads it."""
     rows = "name, line_types.pipe.EI, riser.end.position\n# a remark\nsoft, 100,\nfar, , \"[9.5, 0.0, 4.0]\"\n"
     (tmp_path / "table.csv").write_text(rows, encoding="utf-8")
-    found = cases(tmp_path, "table: table.csv")
-    assert [(case.name, case.values) for case in found] == [
+    all_cases = cases(tmp_path, "table: table.csv")
+    assert [(case.name, case.values) for case in all_cases] == [
         ("soft", {"line_types.pipe.EI": 100}),
         ("far", {"riser.end.position": [9.5, 0.0, 4.0]}),
     ]
@@ -106,9 +106,9 @@ def test_a_case_is_another_one_where_the_run_that_it_begins_with_has_changed(tmp
 def test_the_examples_of_the_page_are_those_of_the_demos() -> None:
     example, offsets = (ROOT / "demos" / name / "cases.yaml" for name in ("waves", "offsets"))
     assert blocks(ROOT / "docs/cases.md", "yml") == [each.read_text(encoding="utf-8") for each in (example, offsets)]
-    reported, found = read_cases(example)
-    assert (len(found), reported.statistics.since) == (54, 52.0)
-    assert found[-1].name == "storm-direction=195-far-seed=3"
+    case_file, all_cases = read_cases(example)
+    assert (len(all_cases), case_file.statistics.since) == (54, 52.0)
+    assert all_cases[-1].name == "storm-direction=195-far-seed=3"
 
 
 MISTAKES = [

@@ -161,12 +161,12 @@ def test_tables_of_all_cases(tmp_path: Path, fake: Fake, invoke: Callable[..., A
     assert extremes["heave: top tension"]["largest"] == f"{tension:.8g}"
     assert (extremes["heave: top tension"]["in case"], extremes["heave: top tension"]["cases"]) == (NAMES[0], "3")
     with xarray.open_dataset(tmp_path / "sweep/cases.nc", engine="h5netcdf") as opened:
-        found: Any = opened  # numpy's versions type lists differently
-        assert found["case"].values.tolist() == NAMES
-        assert found["set_line_types_pipe_EI"].values.tolist() == [100.0, 100.0, 200.0, 200.0]
-        assert found["status"].values.tolist() == [0, 0, 0, 1]
-        assert found["reason"].values.tolist() == ["", "", "", "out of soil"]
-        top = found["heave_top_tension"]
+        tables: Any = opened  # numpy's versions type lists differently
+        assert tables["case"].values.tolist() == NAMES
+        assert tables["set_line_types_pipe_EI"].values.tolist() == [100.0, 100.0, 200.0, 200.0]
+        assert tables["status"].values.tolist() == [0, 0, 0, 1]
+        assert tables["reason"].values.tolist() == ["", "", "", "out of soil"]
+        top = tables["heave_top_tension"]
         assert (top.attrs["units"], top.attrs["stage"], top.attrs["sign_convention"]) == (
             "N", "heave", "positive in tension",
         )  # fmt: skip

@@ -27,8 +27,8 @@ def report(mapping: Mapping) -> str:
 
 def warnings(mapping: Mapping) -> list[str]:
     """But for those that these scenes have."""
-    reported = [line for line in report(mapping).splitlines() if line.startswith("warning: ")]
-    return [line for line in reported if not any(known in line for known in KNOWN)]
+    lines = [line for line in report(mapping).splitlines() if line.startswith("warning: ")]
+    return [line for line in lines if not any(known in line for known in KNOWN)]
 
 
 def without_soil(*stages: Mapping) -> Mapping:
@@ -90,10 +90,10 @@ def reasons(mapping: Mapping) -> Mapping:
 
 
 def test_reasons_of_what_is_left_out() -> None:
-    found = reasons(without_soil())
-    line_with([found["soil"]], "no soil")
-    line_with([found["inertia"]], "no stage", "dynamic")
-    line_with([found["morison"]], "no stage", "dynamic", "still water")
+    left_out = reasons(without_soil())
+    line_with([left_out["soil"]], "no soil")
+    line_with([left_out["inertia"]], "no stage", "dynamic")
+    line_with([left_out["morison"]], "no stage", "dynamic", "still water")
 
 
 def test_a_dry_riser_has_no_hydrodynamics() -> None:
@@ -148,18 +148,18 @@ def test_attachments_are_counted_and_weighed() -> None:
 def test_memory_grows_with_the_soil() -> None:
     fine = {"kind": "hex", "size_at_riser": 0.2, "size_far": 0.5}
     scenes = without_soil(), touchdown(), with_value(touchdown(), "soil", "mesh", value=fine)
-    reported = [re.findall(r"estimated memory: (\d+) MB on 1 rank", report(scene)) for scene in scenes]
-    bare, small, large = (float(number) for (number,) in reported)
+    memory = [re.findall(r"estimated memory: (\d+) MB on 1 rank", report(scene)) for scene in scenes]
+    bare, small, large = (float(number) for (number,) in memory)
     assert 50.0 < bare < small < large
 
 
 def test_long_elements_at_touchdown_are_reported_with_the_boundary_layer() -> None:
     segments = [{"line_type": "flexible", "length": 30.0, "elements": 6}]
     coarse = with_value(without_soil(), "riser", "segments", value=segments)
-    (found,) = warnings(coarse)
-    layer, H, most = (float(x) for x in re.findall(r"(?:= |at most )([\d.]+)", found))
-    assert "at the touchdown point" in found
-    assert "are 5 m long" in found
+    (warning,) = warnings(coarse)
+    layer, H, most = (float(x) for x in re.findall(r"(?:= |at most )([\d.]+)", warning))
+    assert "at the touchdown point" in warning
+    assert "are 5 m long" in warning
     assert layer == pytest.approx(np.sqrt(5.0e4 / H), rel=1e-3)
     assert most == pytest.approx(0.5 * layer, rel=1e-2)
 
@@ -197,20 +197,20 @@ def test_a_floating_pipe_is_reported_with_its_weight() -> None:
     ],
 )
 def test_penalty_far_from_the_soil_is_reported(stiffness: float, says: tuple[str, ...]) -> None:
-    (found,) = warnings({**touchdown(), "contact": {"stiffness": stiffness, "smoothing": 0.0}})
-    line_with([found], *says)
+    (warning,) = warnings({**touchdown(), "contact": {"stiffness": stiffness, "smoothing": 0.0}})
+    line_with([warning], *says)
 
 
 def test_a_stiff_penalty_rounded_over_a_long_way_is_reported() -> None:
-    (found,) = warnings({**touchdown(), "contact": {"stiffness": 1.0e8, "smoothing": 1.0e-3}})
-    line_with([found], "2.5e+04 N/m", "moment of touching")
+    (warning,) = warnings({**touchdown(), "contact": {"stiffness": 1.0e8, "smoothing": 1.0e-3}})
+    line_with([warning], "2.5e+04 N/m", "moment of touching")
 
 
 def test_a_riser_that_lies_beyond_the_soil_is_reported() -> None:
     alone = touchdown()
     del alone["seabed"]
-    (found,) = warnings(alone)
-    line_with([found], "nodes", "arc 0 to 1.5 m", "beyond the soil")
+    (warning,) = warnings(alone)
+    line_with([warning], "nodes", "arc 0 to 1.5 m", "beyond the soil")
     alone["soil"]["block"]["x"] = [-1.0, 12.0]
     assert not warnings(alone)
 
@@ -233,10 +233,10 @@ def long_riser(elements: int) -> Mapping:
 
 
 def test_long_elements_in_a_bend_are_reported_with_the_error_of_the_moment() -> None:
-    (found,) = warnings(long_riser(40))
-    line_with([found], "250 m", "arc 875 m", "too long", "bend")
+    (warning,) = warnings(long_riser(40))
+    line_with([warning], "250 m", "arc 875 m", "too long", "bend")
     numbers = r"= ([\d.]+) N\.m, ([\d.]+)% of the largest, ([\d.]+) N\.m: take at most ([\d.]+)"
-    error, share, largest, longest = (float(x) for x in re.findall(numbers, found)[0])
+    error, share, largest, longest = (float(x) for x in re.findall(numbers, warning)[0])
     assert largest == pytest.approx(264.4, rel=0.01)
     assert error == pytest.approx(0.01 * share * largest, rel=0.01)
     assert longest == pytest.approx(250.0 * (9.0 / share) ** 0.25, rel=0.01)
@@ -246,8 +246,8 @@ def test_long_elements_in_a_bend_are_reported_with_the_error_of_the_moment() -> 
 @pytest.mark.parametrize(("key", "given"), [("friction", {"axial": 0.3}), ("suction", {"cap": 50.0, "reach": 0.1})])
 def test_nodes_without_friction_or_suction_on_soil_are_reported(key: str, given: Mapping) -> None:
     rough = {**touchdown(), "contact": {"method": "node", key: given}}
-    found, strains = warnings(rough)
-    line_with([found], f"contact.{key}", "seabed only", "2 to 9 m", "-1 to 1 m")
+    warning, strains = warnings(rough)
+    line_with([warning], f"contact.{key}", "seabed only", "2 to 9 m", "-1 to 1 m")
     assert "small strain" in strains
     rough["contact"]["method"] = "auto"
     assert not warnings(rough)
@@ -257,12 +257,12 @@ def test_nodes_without_friction_or_suction_on_soil_are_reported(key: str, given:
 
 def test_soil_that_the_riser_does_not_reach_is_reported() -> None:
     aside = with_value(touchdown(), "soil", "block", "x", value=[18.0, 21.0])
-    (found,) = warnings(aside)
-    gap = float(re.findall(r"hangs ([\d.]+) m above it", found)[0])
+    (warning,) = warnings(aside)
+    gap = float(re.findall(r"hangs ([\d.]+) m above it", warning)[0])
     assert 6.0 < gap < 8.0
-    line_with([found], "ends move", "0 m")
-    for stages, reported in (([LAY, heave(3.0)], 1), ([LAY, heave(3.0, amplitude=2.0)], 0)):
-        assert len(lines_with(warnings(aside | {"stages": stages}), "does not reach")) == reported
+    line_with([warning], "ends move", "0 m")
+    for stages, count in (([LAY, heave(3.0)], 1), ([LAY, heave(3.0, amplitude=2.0)], 0)):
+        assert len(lines_with(warnings(aside | {"stages": stages}), "does not reach")) == count
     pushed = {"name": "push", "kind": "static", "loads": [{"distributed": [0.0, 0.0, -1.0e3]}]}
     line_with(warnings(aside | {"stages": [pushed]}), "does not reach")
     gentle = with_value(touchdown(pushed), "soil", "block", "x", value=[10.0, 13.0])
@@ -275,29 +275,29 @@ def test_soil_beside_the_riser_is_reported() -> None:
     line_with(warnings(beside), "does not reach", "3 to 5 m", "first shape", "not above")
 
 
-@pytest.mark.parametrize(("level", "reported"), [(0.0, 0), (0.3, 1)])
-def test_a_mesh_whose_top_is_off_the_seabed_is_reported(level: float, reported: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("level", "count"), [(0.0, 0), (0.3, 1)])
+def test_a_mesh_whose_top_is_off_the_seabed_is_reported(level: float, count: int, tmp_path: Path) -> None:
     box = ["--x", "2", "9", "--y", "-1", "1", "--depth", "1", "--size", "0.5", "--size-far", "1"]
     mesh([str(tmp_path / "soil.msh"), *box, "--level", str(level)])
     scene = with_value(touchdown(), "soil", "mesh", value={"file": str(tmp_path / "soil.msh")})
     del scene["soil"]["block"]
-    assert len(found := lines_with(warnings(scene), "nowhere at the seabed")) == reported
-    assert len(lines_with(found, "soil's top", "0.3 to 0.3 m", "z = 0 m")) == reported
+    assert len(lines := lines_with(warnings(scene), "nowhere at the seabed")) == count
+    assert len(lines_with(lines, "soil's top", "0.3 to 0.3 m", "z = 0 m")) == count
 
 
 def test_static_loads_that_end_with_their_stage_are_reported() -> None:
     lift: Mapping = {"at": 20.0, "force": [0.0, 0.0, 1.0e3]}
     lifted = {"name": "lift", "kind": "static", "loads": [lift]}
 
-    def reported(*stages: Mapping) -> list[str]:
+    def warned(*stages: Mapping) -> list[str]:
         return lines_with(warnings(without_soil(*stages)), "ends with its stage")
 
-    (found,) = reported(LAY, lifted, heave(1.0))
-    assert found.startswith("warning: stages.1.loads.0: force [0.0, 0.0, 1000.0] N")
-    line_with([found], "at 20.0", "heave", "springs back", "keep: true")
-    line_with(reported(lifted, LAY)[:1], "lay", "comes back")
-    assert not reported(LAY, lifted)
-    assert not reported(lifted, heave(1.0) | {"loads": [lift | {"history": [[0.0, 1.0], [1.0, 0.5]]}]})
-    assert reported(lifted, heave(1.0) | {"loads": [lift | {"at": 10.0}]})
+    (line,) = warned(LAY, lifted, heave(1.0))
+    assert line.startswith("warning: stages.1.loads.0: force [0.0, 0.0, 1000.0] N")
+    line_with([line], "at 20.0", "heave", "springs back", "keep: true")
+    line_with(warned(lifted, LAY)[:1], "lay", "comes back")
+    assert not warned(LAY, lifted)
+    assert not warned(lifted, heave(1.0) | {"loads": [lift | {"history": [[0.0, 1.0], [1.0, 0.5]]}]})
+    assert warned(lifted, heave(1.0) | {"loads": [lift | {"at": 10.0}]})
     let_go = lifted | {"loads": [lift | {"history": [[0.0, 0.0], [0.5, 1.0], [1.0, 0.0]]}]}
-    assert not reported(let_go, heave(1.0))
+    assert not warned(let_go, heave(1.0))

@@ -95,8 +95,8 @@ def test_elements_as_proposed_need_no_word() -> None:
     scene = read_scene(FIRST)
     segments = of(scene)
     assert segments is not None
-    reported = proposal(build(scene, MPI.COMM_SELF).riser, "riser")
-    line_with(reported, "elements graded", "bend", "1%", "largest moment")
+    text = proposal(build(scene, MPI.COMM_SELF).riser, "riser")
+    line_with(text, "elements graded", "bend", "1%", "largest moment")
     assert not proposal(build(cut(scene, segments), MPI.COMM_SELF).riser, "riser")
 
 
@@ -104,11 +104,11 @@ def test_the_words_are_segments_of_a_scene() -> None:
     from ruamel.yaml import YAML
 
     scene = read_scene(FIRST)
-    reported = proposal(build(scene, MPI.COMM_SELF).riser, "riser").split("\n", 1)[1]
-    segments = tuple(Segment(**each) for each in YAML(typ="safe").load(reported))
+    text = proposal(build(scene, MPI.COMM_SELF).riser, "riser").split("\n", 1)[1]
+    segments = tuple(Segment(**each) for each in YAML(typ="safe").load(text))
     assert sum(each.length for each in segments) == pytest.approx(scene.line.length, rel=1e-5)
     assert not proposal(build(cut(scene, segments), MPI.COMM_SELF).riser, "riser")
-    assert reported in describe(scene)
+    assert text in describe(scene)
 
 
 def test_clamped_ends_are_boundary_layers() -> None:
@@ -164,8 +164,8 @@ def test_a_bend_that_no_riser_has_elements_for_is_told() -> None:
 
 def test_a_model_that_the_program_makes_out_of_bounds_is_an_error_of_a_line() -> None:
     document = parse("title: a", "scene.yaml")
-    with pytest.raises(SceneError) as told, placed_in(lambda: document):
+    with pytest.raises(SceneError) as error, placed_in(lambda: document):
         Segment(line_type="pipe", length=-1.0, elements=3)
-    line_with([str(told.value)], "Segment: length: value -1.0", "check the sizes that it follows from")
+    line_with([str(error.value)], "Segment: length: value -1.0", "check the sizes that it follows from")
     with pytest.raises(ValueError, match="another"), placed_in(lambda: document):
         raise ValueError("another")

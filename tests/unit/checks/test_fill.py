@@ -51,9 +51,9 @@ def test_memory_is_that_of_mumps_within_a_quarter(sides: tuple[int, int, int], s
     solver.setType("cholesky" if symmetric else "lu")
     solver.setFactorSolverType("mumps")
     solver.setUp()
-    taken = 1e6 * solver.getFactorMatrix().getMumpsInfog(22)
+    memory = 1e6 * solver.getFactorMatrix().getMumpsInfog(22)
     x, y, z = sides
-    assert factor_memory((float(x), float(y), float(z)), 3.0 * x * y * z, symmetric) == pytest.approx(taken, rel=0.25)
+    assert factor_memory((float(x), float(y), float(z)), 3.0 * x * y * z, symmetric) == pytest.approx(memory, rel=0.25)
     if symmetric:  # entries by MUMPS' ordering are 1.4 times as many, and operations go with their power of 3/2
         work = solver.getFactorMatrix().getMumpsRinfog(3)
         assert 1.0 / 1.5 < work / (1.4**1.5 * operations(x, y, z)) < 1.5

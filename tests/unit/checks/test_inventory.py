@@ -31,10 +31,10 @@ def known(scene: Mapping) -> Inventory:
 @pytest.mark.parametrize("name", SCENES)
 def test_parts_are_those_of_the_stages(name: str) -> None:
     assembly = built(SCENES[name])
-    found = {part.name for stage in assembly.scene.stages for part in assembly.begin(stage).parts}
-    assert found == assembly.part_names
+    names = {part.name for stage in assembly.scene.stages for part in assembly.begin(stage).parts}
+    assert names == assembly.part_names
     everything, parts = {*LINE_REASONS, *BODY_REASONS}, inventory(assembly)
-    expected = {CALLED.get(part, part) for part in found} & everything
+    expected = {CALLED.get(part, part) for part in names} & everything
     assert {*parts.built} - {"contact"} == expected - {"contact"}
     assert all(parts.left_out.values())
 

@@ -103,11 +103,11 @@ def test_what_may_not_fit_into_the_memory_is_warned_of_with_the_numbers(
     """The forecast is within 30 %: what may fit is not refused, and what may not is told."""
     scene = scene_from_mapping(with_mesh(kind="hex", size_at_riser=0.1, size_far=0.1))
     need, numbers = size_of(scene).memory(1), r"soil\.mesh: .* of memory, .* available; "
-    for share, reported in ((0.8, 1), (1.25, 1), (1.35, 0)):
+    for share, count in ((0.8, 1), (1.25, 1), (1.35, 0)):
         monkeypatch.setattr(limits, "available_memory", lambda share=share: share * need)
-        found = limits.tight(limits.size_that_fits(scene, tmp_path, COMM), COMM)
-        assert len(found) == reported
-        assert all(re.match("the run may end.*: " + numbers, warning) for warning in found)
+        warnings = limits.tight(limits.size_that_fits(scene, tmp_path, COMM), COMM)
+        assert len(warnings) == count
+        assert all(re.match("the run may end.*: " + numbers, warning) for warning in warnings)
     monkeypatch.setattr(limits, "available_memory", lambda: 0.75 * need)
     with pytest.raises(SceneError, match=numbers):
         limits.size_that_fits(scene, tmp_path, COMM)

@@ -47,7 +47,7 @@ def part(length: float, line_type: str = "pipe") -> Mapping:
 LAZY = part(60.0), part(20.0, "float"), part(70.0)
 
 
-def reported(given: Scene) -> list[str]:
+def warned(given: Scene) -> list[str]:
     return line_summary(build(given, MPI.COMM_SELF).riser)
 
 
@@ -60,7 +60,7 @@ def numbers(line: str) -> list[float]:
 
 
 def test_weights_of_a_segment() -> None:
-    _, row, whole, *_ = reported(scene())
+    _, row, whole, *_ = warned(scene())
     assert numbers(row) == pytest.approx([0, 150, 0.3, 0.2, 120, FULL, 9.81 * FULL, WET, 3e8, 5e4], rel=5e-4)
     assert numbers(whole) == pytest.approx([150, 0.15 * FULL, 0.15 * 9.81 * FULL, 0.15 * WET], rel=5e-4)
 
@@ -159,13 +159,13 @@ def test_meant_buoyancy_is_not_warned_of() -> None:
 
 def test_a_line_in_air_does_not_float() -> None:
     """A light line between two decks above the surface; with an end in the water that end is told of."""
-    for level, told in ((-1.0, 0), (150.0, 1), (50.0, 1)):
+    for level, count in ((-1.0, 0), (150.0, 1), (50.0, 1)):
         made = riser_scene(
             static(), pipe=FLOAT, length=128.5, elements=20, start=prescribed(0.0, 0.0, 10.0),
             end=prescribed(80.0, 0.0, 110.0), gravity=9.81, water={"density": 1000.0, "surface_level": level},
         )  # fmt: skip
         made["line_types"]["pipe"]["mass"] = 100.0
-        assert len(floating(scene_from_mapping(made))) == told, level
+        assert len(floating(scene_from_mapping(made))) == count, level
 
 
 def test_a_row_of_attachments() -> None:

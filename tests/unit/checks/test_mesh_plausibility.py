@@ -40,20 +40,20 @@ def test_cells_and_elements_that_suit_are_not_reported() -> None:
 
 def test_cells_and_elements_longer_than_the_bend_on_soil_are_reported() -> None:
     """(4 EI/E)^(1/4) = (2e5/1.8e6)^(1/4) = 0.58 m."""
-    (reported,) = warned(on_block(LAY, mesh=sizes(1.0, 0.012)))
-    line_with([reported], "soil.mesh cells", "1 m", "long", "0.577 m")
+    (warning,) = warned(on_block(LAY, mesh=sizes(1.0, 0.012)))
+    line_with([warning], "soil.mesh cells", "1 m", "long", "0.577 m")
     scene = on_block(LAY, mesh=sizes(0.5, 0.012))
     scene["riser"]["segments"][0]["elements"] = 12
-    (reported,) = warned(scene)
-    line_with([reported], "elements", "over the soil", "1 m", "long", "0.577 m", "at most 0.29 m")
+    (warning,) = warned(scene)
+    line_with([warning], "elements", "over the soil", "1 m", "long", "0.577 m", "at most 0.29 m")
 
 
 def test_sections_deep_beside_the_bend_on_soil_are_reported() -> None:
     """3 m below a bend of 0.58 m; the block's depth of 1 m has no more effect than the sections' own."""
     block = {"x": [2.0, 9.0], "y": [-1.0, 1.0], "depth": 3.0}
-    (reported,) = warned(on_block(LAY, mesh=sizes(0.5, 0.012), model="sections", block=block))
+    (warning,) = warned(on_block(LAY, mesh=sizes(0.5, 0.012), model="sections", block=block))
     excess = math.log(3.0 / (2.516 * 0.577)) / (math.log(12.0 / 0.0236) - 0.5)
-    line_with([reported], "0.577 m", "3 m of soil", "settles", f"{excess:.0%} more")
+    line_with([warning], "0.577 m", "3 m of soil", "settles", f"{excess:.0%} more")
     assert warned(on_block(LAY, mesh=sizes(0.5, 0.012), block=block)) == []
     assert warned(on_block(LAY, mesh=sizes(0.5, 0.012), model="sections")) == []
 
@@ -65,9 +65,9 @@ def test_chain_on_soil_has_no_bend_to_be_resolved(mesh: Mapping | str) -> None:
     scene["line_types"]["flexible"] |= {"EI": 0.0}
     assembly = built(scene)
     assert list(mesh_warnings(assembly.riser)) == []
-    found = predicted_settlement(assembly.riser)
-    assert found is not None
-    assert (found.overshoot, found.deepest) == (1.0, found.by_weight)
+    settled = predicted_settlement(assembly.riser)
+    assert settled is not None
+    assert (settled.overshoot, settled.deepest) == (1.0, settled.by_weight)
     assert assembly.scene.soil is not None
     assert isinstance(assembly.scene.soil.mesh, GeneratedMesh)
     assert assembly.scene.soil.mesh.along == pytest.approx(1.2 if mesh == "auto" else 0.5)
@@ -82,22 +82,22 @@ def test_long_cells_under_an_oblique_riser_are_reported() -> None:
 
 def test_a_block_that_the_touchdown_point_will_leave_is_reported() -> None:
     block = {"x": [7.0, 8.5], "y": [-1.0, 1.0], "depth": 1.0}
-    (reported,) = (
-        reported for reported in warned(on_block(LAY, heave(3.0, amplitude=2.0), block=block)) if "leaves" in reported
+    (warning,) = (
+        warning for warning in warned(on_block(LAY, heave(3.0, amplitude=2.0), block=block)) if "leaves" in warning
     )
-    assert "take block: auto" in reported
-    assert not [reported for reported in warned(on_block(LAY, heave(3.0, amplitude=0.01))) if "leaves" in reported]
+    assert "take block: auto" in warning
+    assert not [warning for warning in warned(on_block(LAY, heave(3.0, amplitude=0.01))) if "leaves" in warning]
 
 
 def test_fine_cells_that_the_touchdown_point_will_leave_are_reported() -> None:
-    def told(low: float, high: float) -> list[str]:
+    def warned_of(low: float, high: float) -> list[str]:
         mesh = {**sizes(0.5, 0.012)}
         mesh["size_at_riser"] = {**mesh["size_at_riser"], "touchdown": [low, high]}
         return [each for each in warned(on_block(LAY, heave(3.0, amplitude=0.3), mesh=mesh)) if "touchdown is" in each]
 
-    assert told(3.0, 15.0) == []
-    (reported,) = told(3.0, 7.0)
-    line_with(reported, "soil.mesh.size_at_riser.touchdown is x from 3 to 7 m", "comes to x from", "longer than 0.5 m")
+    assert warned_of(3.0, 15.0) == []
+    (warning,) = warned_of(3.0, 7.0)
+    line_with(warning, "soil.mesh.size_at_riser.touchdown is x from 3 to 7 m", "comes to x from", "longer than 0.5 m")
 
 
 def test_what_cells_miss_grows_with_their_size() -> None:
@@ -105,9 +105,9 @@ def test_what_cells_miss_grows_with_their_size() -> None:
     assert missed(fine, fine) == pytest.approx(0.02)
     assert missed(half, fine) == pytest.approx(0.52)
     assert missed(Settled(0.0, 0.0, 1.0), Settled(0.0, 0.0, 1.0)) == 0.0
-    reported = resolution_in_words(built(on_block(LAY, mesh=sizes(0.5, 0.012))).riser)
-    assert reported is not None
-    line_with(reported, "0.5 m along", "0.012 m across", "0.0236 m touch", "2% less")
+    words = resolution_in_words(built(on_block(LAY, mesh=sizes(0.5, 0.012))).riser)
+    assert words is not None
+    line_with(words, "0.5 m along", "0.012 m across", "0.0236 m touch", "2% less")
     wide = resolution_in_words(built(on_block(LAY, mesh=sizes(0.5, 0.05))).riser)
     assert wide is not None
     assert int(wide.rsplit("%")[0].rsplit(" ")[-1]) > 20
@@ -125,7 +125,7 @@ def test_a_block_too_shallow_and_narrow_is_reported_after_the_run(tmp_path: Path
     scene = touchdown(LAY, su=6000.0)
     scene["soil"] |= {"block": block, "mesh": {"kind": "hex", "size_at_riser": 0.2, "size_far": 0.3}}
     bottom, sides = [
-        reported for reported in stage_warnings(scene, tmp_path) if "changes the soil's stress" in reported
+        warning for warning in stage_warnings(scene, tmp_path) if "changes the soil's stress" in warning
     ]
     line_with([bottom], "block's bottom", "deeper")
     line_with([sides], "sides along the riser", "wider", "15%")

@@ -48,16 +48,16 @@ def moved(name: str = "move", duration: float = 6.2831853, time_step: float = 0.
     ],
 )
 def test_a_start_at_full_speed_is_reported_and_a_ramp_heals_it(motion: Mapping, speed: str) -> None:
-    (reported,) = warnings(static(), moved(**motion))
-    line_with([reported], "stages.1.motion.end:", f"starts at {speed}", "ramp [s]")
+    (warning,) = warnings(static(), moved(**motion))
+    line_with([warning], "stages.1.motion.end:", f"starts at {speed}", "ramp [s]")
     ((kind, given),) = motion.items()
     assert not warnings(static(), moved(**{kind: given | {"ramp": 3.0}}))
 
 
 def test_a_table_that_starts_moving(tmp_path: Path) -> None:
     (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + "".join(f"{t},{-3 * t},0,0\n" for t in range(8)))
-    (reported,) = warnings(moved(table="t.csv"), folder=tmp_path)
-    line_with([reported], "end", "starts at 3 m/s")
+    (warning,) = warnings(moved(table="t.csv"), folder=tmp_path)
+    line_with([warning], "end", "starts at 3 m/s")
     rows = "".join(f"{t},{-0.1 * t**3},0,0\n" for t in range(8))
     (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + rows)
     assert not warnings(moved(table="t.csv"), folder=tmp_path)
@@ -65,10 +65,10 @@ def test_a_table_that_starts_moving(tmp_path: Path) -> None:
 
 def test_what_stops_dead_is_reported() -> None:
     ramped: dict[str, Any] = {"harmonic": HARMONIC | {"ramp": 3.0}}
-    (reported,) = warnings(moved(**ramped), dynamic(1.0, 0.1, "still"))
-    line_with([reported], "stages.1:", "end", "stops dead", "2 m/s")
-    (reported,) = warnings(moved(**ramped), moved("again", **ramped))
-    line_with([reported], "stages.1:", "end", "another motion")
+    (warning,) = warnings(moved(**ramped), dynamic(1.0, 0.1, "still"))
+    line_with([warning], "stages.1:", "end", "stops dead", "2 m/s")
+    (warning,) = warnings(moved(**ramped), moved("again", **ramped))
+    line_with([warning], "stages.1:", "end", "another motion")
     assert not warnings(moved(**ramped), moved("on", harmonic=HARMONIC))  # a whole period later it is the same sine
     assert not warnings(moved(**ramped), static())
     assert len(warnings(moved(**ramped), static(), moved("again", harmonic=HARMONIC))) == 1
@@ -88,8 +88,8 @@ def test_what_stops_dead_is_reported() -> None:
 def test_long_time_steps(period: float, waves: Mapping | None, time_step: float, says: tuple[str, ...]) -> None:
     water: dict[str, Any] = {"water": {"surface_level": 10.0, "waves": waves}} if waves else {}
     harmonic = {"amplitude": [0.0, 0.0, 2.0], "period": period, "ramp": period}
-    reported = warnings(static(), moved(harmonic=harmonic, time_step=time_step), **water)
-    assert len(reported) == len(lines_with(reported, "stages.1.time_step:", *says)) == bool(says)
+    lines = warnings(static(), moved(harmonic=harmonic, time_step=time_step), **water)
+    assert len(lines) == len(lines_with(lines, "stages.1.time_step:", *says)) == bool(says)
 
 
 @pytest.mark.parametrize(
@@ -105,10 +105,10 @@ def test_long_time_steps(period: float, waves: Mapping | None, time_step: float,
     ],
 )
 def test_ends_that_go_farther_apart_than_the_riser_is_long(stage: Mapping, path: str, apart: float) -> None:
-    reported = line_with(warnings(static(), stage), f"{path}:", "ends", "60 m long")
-    found, stretched = (float(x) for x in re.findall(r"([\d.]+)(?: m apart|%)", reported))
-    assert found == pytest.approx(apart, abs=0.1)
-    assert stretched == pytest.approx(100.0 * (found / 60.0 - 1.0), abs=0.01)
+    line = line_with(warnings(static(), stage), f"{path}:", "ends", "60 m long")
+    gap, stretched = (float(x) for x in re.findall(r"([\d.]+)(?: m apart|%)", line))
+    assert gap == pytest.approx(apart, abs=0.1)
+    assert stretched == pytest.approx(100.0 * (gap / 60.0 - 1.0), abs=0.01)
 
 
 def test_ends_that_stay_within_the_length_are_not_reported() -> None:
@@ -121,12 +121,12 @@ def test_motions_go_on_from_where_the_stage_before_left_the_end() -> None:
     pull = static("pull", move={"end": [48.0, 0.0, 5.0]})
     heave = moved(harmonic=HARMONIC | {"amplitude": [2.0, 0.0, 4.0], "ramp": 3.0})
     assert not warnings(static(), heave)
-    (reported,) = warnings(static(), pull, heave)
-    assert re.match(r"stages\.2\.motion: .* 6[\d.]* m apart", reported)
+    (warning,) = warnings(static(), pull, heave)
+    assert re.match(r"stages\.2\.motion: .* 6[\d.]* m apart", warning)
 
 
 def test_a_table_that_leads_too_far_at_one_of_its_rows_is_reported(tmp_path: Path) -> None:
     rows = [(t, 20 * (t == 51)) for t in range(0, 103, 3)]
     (tmp_path / "t.csv").write_text("t [s], x [m], y [m], z [m]\n" + "".join(f"{t},{x},0,0\n" for t, x in rows))
-    reported = warnings(static(), moved(duration=100.0, table="t.csv"), folder=tmp_path)
-    assert [warning for warning in reported if "apart at 51 s" in warning]
+    lines = warnings(static(), moved(duration=100.0, table="t.csv"), folder=tmp_path)
+    assert [warning for warning in lines if "apart at 51 s" in warning]

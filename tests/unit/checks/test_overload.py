@@ -57,11 +57,11 @@ def test_place_load_and_capacity() -> None:
     """The deepest place, some diameters deep, of a law that goes on beyond its range."""
     assembly = lying(clay(300.0))
     said = overload(assembly)
-    found = re.search(
+    match = re.search(
         r"at arc (\S+) m, at \(\S+, \S+, (\S+)\) m, the riser puts (\S+) N/m .* bears about (\S+) N/m", said
     )
-    assert found, said
-    arc, z, load, capacity = (float(each) for each in found.groups())
+    assert match, said
+    arc, z, load, capacity = (float(each) for each in match.groups())
     at_rest = State.at_rest(0.0, assembly.size)
     depth = _depth(assembly, at_rest)
     assert arc == pytest.approx(assembly.riser.line.arc[depth.argmax()], rel=1e-3)
@@ -100,15 +100,15 @@ def overloaded(scene: Mapping, folder: Path) -> list[str]:
 
 @pytest.mark.parametrize("method", ["node", "surface"])
 def test_coarse_cells_that_bear_more_than_their_clay_are_reported(method: str, tmp_path: Path) -> None:
-    (reported,) = overloaded(on_clay(450.0) | {"contact": {"method": method}}, tmp_path)
-    found = re.search(r"bears (\S+) N/m at arc (\S+) m and 1 of the load, (\S+) times the (\S+) N/m", reported)
-    assert found, reported
-    load, arc, times, capacity = (float(each) for each in found.groups())
+    (warning,) = overloaded(on_clay(450.0) | {"contact": {"method": method}}, tmp_path)
+    match = re.search(r"bears (\S+) N/m at arc (\S+) m and 1 of the load, (\S+) times the (\S+) N/m", warning)
+    assert match, warning
+    load, arc, times, capacity = (float(each) for each in match.groups())
     assert capacity == pytest.approx((2.0 + np.pi) * 450.0 * D, rel=1e-3)
     assert times == pytest.approx(load / capacity, rel=0.05)
     assert load > 717.0
     assert 2.0 < arc < 9.0
-    assert "eighth of the diameter" in reported
+    assert "eighth of the diameter" in warning
 
 
 def test_what_clay_bears_is_not_reported(tmp_path: Path) -> None:
@@ -123,8 +123,8 @@ def bearing(**soil: object) -> float | None:
     scene = on_clay(500.0)
     if "layers" in soil:
         del scene["soil"]["law"]
-    found = surface_bearing(built(scene | {"soil": scene["soil"] | soil}).riser)
-    return found.capacity if found is not None else None
+    values = surface_bearing(built(scene | {"soil": scene["soil"] | soil}).riser)
+    return values.capacity if values is not None else None
 
 
 def test_soil_is_compared_with_what_is_known_to_bear() -> None:

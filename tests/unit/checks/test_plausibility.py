@@ -23,7 +23,7 @@ ONE_CELL: Mapping = {"kind": "hex", "size_at_riser": 9.0, "size_far": 9.0}
 ROPE: Mapping = {"EA": 1.0e4, "EI": 1.0, "mass": 5.0, "outer_diameter": 0.02}
 
 
-def reported(scene: Mapping, folder: Path) -> list[list[str]]:
+def warnings_of(scene: Mapping, folder: Path) -> list[list[str]]:
     """Warnings in the summary, stage by stage."""
     run(scene_from_mapping(scene), folder)
     return [stage["warnings"] for stage in json.loads((folder / "summary.json").read_text())["stages"]]
@@ -39,7 +39,7 @@ def test_axial_strain_beyond_what_beams_stand_for(tmp_path: Path, capsys: pytest
     def force(name: str, size: float) -> Mapping:
         return static(name, loads=[{"at": "end", "force": [size, 0.0, 0.0]}])
 
-    much, little = reported(pulled(force("much", 5.7e3), force("little", 0.9e3)), tmp_path)
+    much, little = warnings_of(pulled(force("much", 5.7e3), force("little", 0.9e3)), tmp_path)
     (warning,) = much
     assert re.search(r"along its axis.* 0\.57 at arc\s\d", warning)
     assert "at most 10%" in warning
@@ -52,14 +52,14 @@ def test_strain_by_bending(tmp_path: Path) -> None:
     curl = static("curl", loads=[{"at": "end", "moment": [0.0, 12.0, 0.0]}])
     scene = pulled(curl)
     scene["riser"]["segments"][0] |= {"length": 0.5, "elements": 20}
-    ((warning,),) = reported(scene, tmp_path)
+    ((warning,),) = warnings_of(scene, tmp_path)
     assert re.search(r"by bending,.* 0\.12 at arc\s\d", warning)
 
 
 def test_a_stage_tells_its_worst_instant(tmp_path: Path) -> None:
     history = [[0.0, 0.0], [1.0, 1.0], [2.0, 0.0]]
     push = dynamic(2.0, 0.25, loads=[{"at": "end", "force": [4.0e3, 0.0, 0.0], "history": history}])
-    ((warning, *_),) = reported(pulled(push), tmp_path)
+    ((warning, *_),) = warnings_of(pulled(push), tmp_path)
     assert "strained along its axis" in warning
     assert warning.split(" and ")[1].startswith(("0.75 s", "1 s", "1.25 s", "1.5 s"))
 
@@ -105,19 +105,20 @@ def judged(
     """Warnings of a state with these tensions at the nodes [N] and this largest moment [N m], which strain little, and
     with these misfits of the elements [N m], none by default.
     """
-    found, count = Plausibility(assembly.riser), len(tension)
-    found.begin_stage(assembly.scene.stages[0])
-    found.EA = np.full(count, 1.0e9)
+    plausibility, count = Plausibility(assembly.riser), len(tension)
+    plausibility.begin_stage(assembly.scene.stages[0])
+    plausibility.EA = np.full(count, 1.0e9)
     values = {"effective_tension": np.array([tension]), "curvature": np.zeros((1, count))}
-    found.look(np.ones(1), Record(assembly.riser.line.arc, values | {"bending_moment": np.full((1, count), moment)}))
+    values["bending_moment"] = np.full((1, count), moment)
+    plausibility.look(np.ones(1), Record(assembly.riser.line.arc, values))
     misfits = (np.array([each or np.zeros(count - 1)]) for each in (smooth, steep))
-    found.look_closely(np.ones(1), *misfits)
+    plausibility.look_closely(np.ones(1), *misfits)
     again = Plausibility(assembly.riser)
     again.begin_stage(assembly.scene.stages[0])
-    again.restore(found.state())
-    assert again.warnings() == found.warnings()
-    assert again.bending() == found.bending()
-    return found.warnings()
+    again.restore(plausibility.state())
+    assert again.warnings() == plausibility.warnings()
+    assert again.bending() == plausibility.bending()
+    return plausibility.warnings()
 
 
 def test_bending_that_elements_blur_is_reported_in_every_stage(tmp_path: Path) -> None:
@@ -125,7 +126,7 @@ def test_bending_that_elements_blur_is_reported_in_every_stage(tmp_path: Path) -
     ends = prescribed(0.0, 0.0, 60.0), prescribed(80.0, 0.0, 100.0, rotation="fixed")
     stages = static("hang"), static("pull", move={"end": [90.0, 0.0, 100.0]}), dynamic(0.2, 0.1)
     options: Mapping = {"pipe": pipe, "length": 150.0, "elements": 20, "start": ends[0], "end": ends[1]}
-    hang, *others = reported(riser_scene(*stages, **options, gravity=9.81), tmp_path)
+    hang, *others = warnings_of(riser_scene(*stages, **options, gravity=9.81), tmp_path)
     assert hang == []
     for (warning,) in others:
         line_with([warning], "7.5 m", "too long", "bending", "arc 146.25 m", "N.m, 46%", "limit 20%")
@@ -164,7 +165,7 @@ def test_a_small_turn_of_a_stiff_element_hides_no_other_one() -> None:
 def test_soil_that_is_never_touched_is_reported_after_the_last_stage(tmp_path: Path) -> None:
     aside = touchdown(LAY, heave(0.2))
     aside["soil"] |= {"block": {"x": [18.0, 21.0], "y": [-1.0, 1.0], "depth": 1.0}, "mesh": ONE_CELL}
-    lay, moved = reported(aside, tmp_path / "aside")
+    lay, moved = warnings_of(aside, tmp_path / "aside")
     assert lay == []
     warning = line_with(moved, "in no stage", "touch the soil", "18 to 21 m", "-1 to 1 m")
     assert "touches down at [6" in warning
@@ -173,4 +174,4 @@ def test_soil_that_is_never_touched_is_reported_after_the_last_stage(tmp_path: P
 def test_soil_that_is_touched_is_not_reported(tmp_path: Path) -> None:
     below = touchdown(su=2000.0)
     below["soil"] |= {"block": {"x": [2.0, 9.0], "y": [-1.0, 1.0], "depth": 1.0}, "mesh": ONE_CELL}
-    assert reported(below, tmp_path) == [[]]
+    assert warnings_of(below, tmp_path) == [[]]

@@ -88,7 +88,7 @@ def test_overshoot_of_the_touchdown_is_the_deepest_place(depth: float) -> None:
 
 
 def test_a_riser_settles_most_where_it_touches_down() -> None:
-    found = predicted_settlement(built(touchdown(LAY, su=6000.0) | {"contact": {"method": "surface"}}).riser)
-    assert found is not None
-    assert found.overshoot > 1.05
-    assert found.deepest > found.by_weight
+    settled = predicted_settlement(built(touchdown(LAY, su=6000.0) | {"contact": {"method": "surface"}}).riser)
+    assert settled is not None
+    assert settled.overshoot > 1.05
+    assert settled.deepest > settled.by_weight

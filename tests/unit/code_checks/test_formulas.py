@@ -49,9 +49,9 @@ def test_collapse_resistance_is_the_least_positive_root() -> None:
         p_el, p_p, f0, slender = RNG.uniform([1e6, 1e6, 0.005, 15.0], [1e8, 1e8, 0.03, 45.0])
         roots = np.roots([1.0, -p_el, -(p_p**2 + p_el * p_p * f0 * slender), p_el * p_p**2])
         least = min(root.real for root in roots if root.real > 0.0)
-        found = dnv_st_f201.collapse_resistance(p_el, p_p, f0, slender, 1.0)
-        assert found == pytest.approx(least, rel=1e-9)
-        assert found < min(p_el, p_p)
+        pressure = dnv_st_f201.collapse_resistance(p_el, p_p, f0, slender, 1.0)
+        assert pressure == pytest.approx(least, rel=1e-9)
+        assert pressure < min(p_el, p_p)
 
 
 def test_a_round_pipe_collapses_at_the_lower_of_both_pressures() -> None:

@@ -26,34 +26,34 @@ def tensions(effects: LoadEffects) -> list[list[float]]:
 
 
 def followed(reference: Reference, *stages: tuple[str, SectionEffects]) -> list[list[list[float]]]:
-    found = []
+    states = []
     for name, effects in stages:
         reference.begin_stage(name)
-        found.append(tensions(reference.split(effects)))
-    return found
+        states.append(tensions(reference.split(effects)))
+    return states
 
 
 RUN = (("hang", at(8.0, 10.0)), ("current", at(13.0)), ("broken", at(14.0, 20.0)), ("storm", at(25.0, 12.0)))
 
 
 def test_by_default_the_last_static_stage_is_functional() -> None:
-    found = followed(Reference(None, None, STAGES), *RUN)
-    assert found[0] == [[8.0, 10.0], [0.0, 0.0], [0.0, 0.0]]
-    assert found[1] == [[13.0], [0.0], [0.0]]
-    assert found[2] == [[13.0, 13.0], [1.0, 7.0], [0.0, 0.0]]
-    assert found[3] == [[13.0, 13.0], [12.0, -1.0], [0.0, 0.0]]
+    split = followed(Reference(None, None, STAGES), *RUN)
+    assert split[0] == [[8.0, 10.0], [0.0, 0.0], [0.0, 0.0]]
+    assert split[1] == [[13.0], [0.0], [0.0]]
+    assert split[2] == [[13.0, 13.0], [1.0, 7.0], [0.0, 0.0]]
+    assert split[3] == [[13.0, 13.0], [12.0, -1.0], [0.0, 0.0]]
 
 
 def test_of_a_stage_that_is_named_the_end_is_functional() -> None:
-    found = followed(Reference("hang", None, STAGES), *RUN)
-    assert found[1] == [[10.0], [3.0], [0.0]]
-    assert found[3] == [[10.0, 10.0], [15.0, 2.0], [0.0, 0.0]]
+    split = followed(Reference("hang", None, STAGES), *RUN)
+    assert split[1] == [[10.0], [3.0], [0.0]]
+    assert split[3] == [[10.0, 10.0], [15.0, 2.0], [0.0, 0.0]]
 
 
 def test_what_an_accident_adds_stays_accidental() -> None:
-    found = followed(Reference("current", "broken", STAGES), *RUN)
-    assert found[2] == [[13.0, 13.0], [0.0, 0.0], [1.0, 7.0]]
-    assert found[3] == [[13.0, 13.0], [5.0, -8.0], [7.0, 7.0]]
+    split = followed(Reference("current", "broken", STAGES), *RUN)
+    assert split[2] == [[13.0, 13.0], [0.0, 0.0], [1.0, 7.0]]
+    assert split[3] == [[13.0, 13.0], [5.0, -8.0], [7.0, 7.0]]
 
 
 def test_a_run_that_begins_in_motion_has_the_functional_effects_of_its_first_instant() -> None:

@@ -112,7 +112,7 @@ def test_exit_status_tells_the_kind_of_failure(invoke: Invoke, failure: RiserSoi
 
 
 @pytest.mark.parametrize(
-    ("message", "options", "reported"),
+    ("message", "options", "line"),
     [
         ("riser.initial: catenary: too short", (), f"{SCENE}:21: riser.initial: catenary: too short"),
         ("riser: too long", (), f"{SCENE}:15: riser: too long"),
@@ -121,10 +121,10 @@ def test_exit_status_tells_the_kind_of_failure(invoke: Invoke, failure: RiserSoi
     ],
 )
 def test_problems_found_by_the_parts_get_their_place(
-    invoke: Invoke, message: str, options: tuple[str, ...], reported: str
+    invoke: Invoke, message: str, options: tuple[str, ...], line: str
 ) -> None:
     result, _ = invoke("run", str(SCENE), *options, failure=SceneError(message))
-    assert result.stderr == f"{reported}\n"
+    assert result.stderr == f"{line}\n"
 
 
 def test_unexpected_errors_keep_their_traceback(invoke: Invoke) -> None:

@@ -35,9 +35,9 @@ TOGETHER = [file for file in runnable() if file not in ALONE]
 @pytest.mark.parametrize("file", TOGETHER, ids=lambda file: str(file.relative_to(ROOT)))
 def test_help(file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr(sys, "argv", [str(file), "--help"])
-    with pytest.raises(SystemExit) as left:
+    with pytest.raises(SystemExit) as ended:
         runpy.run_path(str(file), run_name="__main__")
-    assert left.value.code == 0
+    assert ended.value.code == 0
     assert "usage: " in capsys.readouterr().out.lower()
 
 

@@ -68,10 +68,10 @@ def test_the_log_file_has_all_that_is_reported_with_times(invoke: Callable[..., 
     invoke("--log-file", "log.txt", "-q")
     lines = (tmp_path / "log.txt").read_text(encoding="utf-8").splitlines()
     assert all(re.match(STAMP, line) for line in lines)
-    reported = [re.sub(STAMP, "", line) for line in lines]
-    assert reported[0].startswith("riser-soil ")
-    assert reported[1:6] == [TOLD, COMPILING, WARNED, RESULT, FAILED]
-    assert reported[7:] == reported[1:6]
+    messages = [re.sub(STAMP, "", line) for line in lines]
+    assert messages[0].startswith("riser-soil ")
+    assert messages[1:6] == [TOLD, COMPILING, WARNED, RESULT, FAILED]
+    assert messages[7:] == messages[1:6]
 
 
 def test_a_log_file_that_cannot_be_written_is_bad_input(invoke: Callable[..., Any], tmp_path: Path) -> None:
@@ -118,10 +118,10 @@ def test_on_a_terminal_colours_are_shown_unless_unwanted_and_never_logged(no_col
     os.close(ours)
     assert b"\x1b[?25l" in shown  # the bar hides the cursor
     assert bool(re.search(rb"\x1b\[(3|4|9)[0-9]", shown)) is not no_color
-    reported = [re.sub(STAMP, "", line) for line in (tmp_path / "log.txt").read_text(encoding="utf-8").splitlines()]
-    assert reported[1] == "laid in 3 steps"
-    assert reported[-1] == "top tension 3 kN"
-    assert "\x1b" not in "".join(reported)
+    messages = [re.sub(STAMP, "", line) for line in (tmp_path / "log.txt").read_text(encoding="utf-8").splitlines()]
+    assert messages[1] == "laid in 3 steps"
+    assert messages[-1] == "top tension 3 kN"
+    assert "\x1b" not in "".join(messages)
 
 
 def _read(terminal: int) -> bytes:

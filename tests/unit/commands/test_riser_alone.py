@@ -31,17 +31,17 @@ LAUNCHED = {"OMPI_COMM_WORLD_SIZE": "4", "PMI_SIZE": "2", "SLURM_STEP_NUM_TASKS"
 
 def figures(folder: Path) -> dict[str, float]:
     """All numbers of a run's stages, but for times."""
-    found: dict[str, float] = {}
+    values: dict[str, float] = {}
 
     def collect(path: str, value: Any) -> None:
         if isinstance(value, dict | list):
             for key, each in value.items() if isinstance(value, dict) else enumerate(value):
                 collect(f"{path}.{key}", each)
         elif isinstance(value, float) and "energy" not in path:
-            found[path] = value
+            values[path] = value
 
     collect("", json.loads((folder / "summary.json").read_text())["stages"])
-    return found
+    return values
 
 
 def test_a_riser_alone_gives_what_snes_gives_without_petsc_mpi_and_scipy(tmp_path: Path) -> None:
@@ -50,9 +50,9 @@ def test_a_riser_alone_gives_what_snes_gives_without_petsc_mpi_and_scipy(tmp_pat
     done = riser_soil_without((*SOIL, *FOR_USERS), "run", SCENE, "-o", str(tmp_path / "alone"), *overrides)
     assert done.returncode == 0, done.stderr
     run(read_scene(str(ROOT / SCENE), [*SHORT, "solver.newton=snes"]), tmp_path / "snes")
-    found, expected = figures(tmp_path / "alone"), figures(tmp_path / "snes")
+    alone, expected = figures(tmp_path / "alone"), figures(tmp_path / "snes")
     assert len(expected) > 20
-    assert found == pytest.approx(expected, rel=1e-5, abs=1e-5)
+    assert alone == pytest.approx(expected, rel=1e-5, abs=1e-5)
 
 
 def test_lines_and_bodies_give_what_snes_gives_without_petsc_and_mpi(tmp_path: Path) -> None:
@@ -62,9 +62,9 @@ def test_lines_and_bodies_give_what_snes_gives_without_petsc_and_mpi(tmp_path: P
     done = riser_soil_without((*SOIL, *hidden), "run", str(given), "-o", str(tmp_path / "alone"))
     assert done.returncode == 0, done.stderr
     run(read_scene(str(given), ["solver.newton=snes"]), tmp_path / "snes")
-    found, expected = figures(tmp_path / "alone"), figures(tmp_path / "snes")
+    alone, expected = figures(tmp_path / "alone"), figures(tmp_path / "snes")
     assert len(expected) > 20
-    assert found == pytest.approx(expected, rel=1e-5, abs=1e-5)
+    assert alone == pytest.approx(expected, rel=1e-5, abs=1e-5)
 
 
 def test_joints_say_that_they_need_scipy(tmp_path: Path) -> None:

@@ -36,30 +36,30 @@ def gaussian(seed: int, n: int = 2**17, deviation: float = 1.0) -> Array:
     return np.asarray(np.fft.irfft(parts, n) * deviation * n / np.sqrt(4.0 * S.sum()))
 
 
-def seen(*runs: Array, duration: float = 10800.0, **more: Any) -> PlaceStatistics:
+def analysed(*runs: Array, duration: float = 10800.0, **more: Any) -> PlaceStatistics:
     return PlaceStatistics(runs, STEP, Wanted(duration, **more))
 
 
 def test_sine() -> None:
     t = STEP * np.arange(4 * 320)
-    found = seen(MEAN + AMPLITUDE * np.sin(2.0 * np.pi * (t - STEP) / PERIOD), duration=800.0)
-    assert found.mean == pytest.approx(MEAN)
-    assert found.deviation == pytest.approx(AMPLITUDE / np.sqrt(2.0))
-    assert found.period == pytest.approx(PERIOD)
-    assert found.peaks == pytest.approx(np.full(39, MEAN + AMPLITUDE))
-    assert found.rayleigh == pytest.approx(MEAN + AMPLITUDE / np.sqrt(2.0) * np.sqrt(2.0 * np.log(100.0)))
-    assert np.isnan(found.weibull.value)  # peaks of one height have no distribution
-    assert found.spectrum.moment(0) == pytest.approx(AMPLITUDE**2 / 2.0, rel=1e-2)
-    assert found.spectrum.frequency[found.spectrum.density.argmax()] == pytest.approx(1.0 / PERIOD)
+    result = analysed(MEAN + AMPLITUDE * np.sin(2.0 * np.pi * (t - STEP) / PERIOD), duration=800.0)
+    assert result.mean == pytest.approx(MEAN)
+    assert result.deviation == pytest.approx(AMPLITUDE / np.sqrt(2.0))
+    assert result.period == pytest.approx(PERIOD)
+    assert result.peaks == pytest.approx(np.full(39, MEAN + AMPLITUDE))
+    assert result.rayleigh == pytest.approx(MEAN + AMPLITUDE / np.sqrt(2.0) * np.sqrt(2.0 * np.log(100.0)))
+    assert np.isnan(result.weibull.value)  # peaks of one height have no distribution
+    assert result.spectrum.moment(0) == pytest.approx(AMPLITUDE**2 / 2.0, rel=1e-2)
+    assert result.spectrum.frequency[result.spectrum.density.argmax()] == pytest.approx(1.0 / PERIOD)
 
 
 def test_crossings_and_peaks_of_a_broken_line() -> None:
     """Up through zero at 0.5, 2.75 and 6.5 steps; largest in between 1 and 3, what comes after the last left out."""
-    found = cycles(np.array([-1.0, 1.0, -3.0, 1.0, 3.0, -2.0, -1.0, 1.0, 5.0]), 2.0, 0.0)
-    assert found.number == 2
-    assert found.time == pytest.approx(2.0 * (6.5 - 0.5))
-    assert found.period == pytest.approx(6.0)
-    assert found.peaks.tolist() == [1.0, 3.0]
+    counted = cycles(np.array([-1.0, 1.0, -3.0, 1.0, 3.0, -2.0, -1.0, 1.0, 5.0]), 2.0, 0.0)
+    assert counted.number == 2
+    assert counted.time == pytest.approx(2.0 * (6.5 - 0.5))
+    assert counted.period == pytest.approx(6.0)
+    assert counted.peaks.tolist() == [1.0, 3.0]
     assert np.isnan(cycles(np.ones(9), 2.0, 0.0).period)
 
 
@@ -72,8 +72,8 @@ def test_peaks_are_above_the_level() -> None:
 
 def test_runs_of_unlike_lengths_make_blocks_of_the_shortest() -> None:
     x = gaussian(3, 2**13)
-    pieces = seen(*x.reshape(8, -1))
-    unlike = seen(x[:1024], x[1024:3072], x[3072:])
+    pieces = analysed(*x.reshape(8, -1))
+    unlike = analysed(x[:1024], x[1024:3072], x[3072:])
     assert unlike.maxima == pytest.approx(pieces.maxima)
     assert unlike.gumbel == pytest.approx(pieces.gumbel)
 
@@ -86,39 +86,39 @@ def test_blocks_are_whole() -> None:
 
 def test_gaussian_process_has_the_moments_of_its_spectrum() -> None:
     x, m0, m2 = gaussian(1, deviation=2.0), 4.0, 4.0 * (F0**2 + WIDTH**2)
-    found = seen(x)
+    result = analysed(x)
     error = 1.0 / np.sqrt(2.0 * np.sqrt(np.pi) * WIDTH * len(x) * STEP)  # relative, of the variance's estimate
-    assert found.deviation**2 == pytest.approx(m0, rel=3.0 * error)
-    assert found.period == pytest.approx(np.sqrt(m0 / m2), rel=0.01)
+    assert result.deviation**2 == pytest.approx(m0, rel=3.0 * error)
+    assert result.period == pytest.approx(np.sqrt(m0 / m2), rel=0.01)
     assert spectrum(x, STEP, 1000.0).period == pytest.approx(np.sqrt(m0 / m2), rel=0.01)
-    assert spectrum(x, STEP, 1000.0).moment(0) == pytest.approx(found.deviation**2, rel=0.02)
+    assert spectrum(x, STEP, 1000.0).moment(0) == pytest.approx(result.deviation**2, rel=0.02)
 
 
 def test_peaks_of_a_narrow_band_follow_rayleigh() -> None:
     """Weibull's distribution of shape 2 and scale sqrt(2) s; so both foretell the same largest value."""
-    found = seen(gaussian(2, deviation=2.0))
-    assert len(found.peaks) > 3000
-    assert found.weibull_fit.shape == pytest.approx(2.0, rel=0.06)
-    assert found.weibull_fit.scale == pytest.approx(2.0 * np.sqrt(2.0), rel=0.04)
-    assert found.weibull.value == pytest.approx(found.rayleigh, rel=0.05)
-    assert found.weibull.low < found.weibull.value < found.weibull.high
+    result = analysed(gaussian(2, deviation=2.0))
+    assert len(result.peaks) > 3000
+    assert result.weibull_fit.shape == pytest.approx(2.0, rel=0.06)
+    assert result.weibull_fit.scale == pytest.approx(2.0 * np.sqrt(2.0), rel=0.04)
+    assert result.weibull.value == pytest.approx(result.rayleigh, rel=0.05)
+    assert result.weibull.low < result.weibull.value < result.weibull.high
 
 
 def test_maxima_of_seeds_are_those_that_rayleigh_foretells() -> None:
     runs = [gaussian(seed, 2**14) for seed in range(3, 43)]
-    found = seen(*runs, duration=2**14 * STEP, confidence=0.99)
-    assert found.maxima.tolist() == [x.max() for x in runs]
-    assert found.gumbel.low < rayleigh_height(1.0, 2**14 * STEP * np.sqrt(F0**2 + WIDTH**2)) < found.gumbel.high
-    longer = seen(*runs, duration=10.0 * 2**14 * STEP).gumbel.value
-    assert longer == pytest.approx(found.gumbel.value + found.gumbel_fit.scale * np.log(10.0))
+    result = analysed(*runs, duration=2**14 * STEP, confidence=0.99)
+    assert result.maxima.tolist() == [x.max() for x in runs]
+    assert result.gumbel.low < rayleigh_height(1.0, 2**14 * STEP * np.sqrt(F0**2 + WIDTH**2)) < result.gumbel.high
+    longer = analysed(*runs, duration=10.0 * 2**14 * STEP).gumbel.value
+    assert longer == pytest.approx(result.gumbel.value + result.gumbel_fit.scale * np.log(10.0))
 
 
 @pytest.mark.parametrize(("count", "k"), [(5, 2.0), (30, 0.0), (137, 6.0)])
 def test_intervals_of_gumbels_fit_are_right_as_often_as_they_say(count: int, k: float) -> None:
     location, scale, tries, confidence = 40.0, 3.0, 300, 0.9
     samples = stats.gumbel_r.rvs(location, scale, size=(tries, count), random_state=np.random.default_rng(7))
-    found = [fit_gumbel(sample).at(k, confidence) for sample in samples]
-    right = np.mean([each.low < location + k * scale < each.high for each in found])
+    fits = [fit_gumbel(sample).at(k, confidence) for sample in samples]
+    right = np.mean([each.low < location + k * scale < each.high for each in fits])
     assert right == pytest.approx(confidence, abs=3.0 * np.sqrt(confidence * (1.0 - confidence) / tries))
 
 
@@ -126,8 +126,8 @@ def test_intervals_of_weibulls_fit_are_right_as_often_as_they_say() -> None:
     shape, scale, tries, confidence, peaks = 1.5, 4.0, 300, 0.9, 1000.0
     samples = stats.weibull_min.rvs(shape, 0.0, scale, size=(tries, 60), random_state=np.random.default_rng(8))
     largest = scale * np.log(peaks) ** (1.0 / shape)
-    found = [fit_weibull(sample).largest(peaks, confidence) for sample in samples]
-    right = np.mean([each.low < largest < each.high for each in found])
+    fits = [fit_weibull(sample).largest(peaks, confidence) for sample in samples]
+    right = np.mean([each.low < largest < each.high for each in fits])
     assert right == pytest.approx(confidence, abs=3.0 * np.sqrt(confidence * (1.0 - confidence) / tries))
 
 
@@ -146,17 +146,17 @@ def test_each_of_n_samples_is_exceeded_as_often_as_its_rank_in_one_more() -> Non
 
 
 def test_what_is_exceeded() -> None:
-    found = seen(gaussian(10), block=2000.0)
-    assert found.exceeded(1.0)["time"] == pytest.approx(stats.norm.sf(1.0), rel=0.05)
-    at_most_probable = found.exceeded(found.rayleigh)["rayleigh"]
+    result = analysed(gaussian(10), block=2000.0)
+    assert result.exceeded(1.0)["time"] == pytest.approx(stats.norm.sf(1.0), rel=0.05)
+    at_most_probable = result.exceeded(result.rayleigh)["rayleigh"]
     assert at_most_probable == pytest.approx(1.0 - np.exp(-1.0))  # once in the time foretold, on average
-    assert found.exceeded(found.gumbel.value)["gumbel"] == pytest.approx(1.0 - np.exp(-1.0))
-    assert found.exceeded(found.weibull.value)["weibull"] == pytest.approx(1.0 - np.exp(-1.0))
+    assert result.exceeded(result.gumbel.value)["gumbel"] == pytest.approx(1.0 - np.exp(-1.0))
+    assert result.exceeded(result.weibull.value)["weibull"] == pytest.approx(1.0 - np.exp(-1.0))
 
 
 def test_minima_are_maxima_of_the_mirror_image() -> None:
     x = gaussian(11, 2**14) + 0.1 * gaussian(12, 2**14) ** 2
-    least, most = seen(x, minima=True, block=200.0), seen(-x, block=200.0)
+    least, most = analysed(x, minima=True, block=200.0), analysed(-x, block=200.0)
     assert least.rayleigh == pytest.approx(-most.rayleigh)
     assert least.weibull == pytest.approx((-most.weibull.value, -most.weibull.high, -most.weibull.low))
     assert least.gumbel == pytest.approx((-most.gumbel.value, -most.gumbel.high, -most.gumbel.low))
@@ -198,10 +198,10 @@ def test_histories_are_columns_beside_time(tmp_path: Path) -> None:
     assert done.exit_code == 0, done.output
     head, *rows = list(csv.reader(file.open()))
     assert head == ["time_s", "effective_tension_at_5m_N", "effective_tension_at_20m_N", "end_force.x_N"]
-    found = np.array(rows, dtype=float)
-    n = found[:, 0] / STEP - 1.0
-    assert found[0, 0] == pytest.approx(2.5)
-    assert found[:, 1:] == pytest.approx(n[:, None] * [1.5, 3.0, 3.0])
+    columns = np.array(rows, dtype=float)
+    n = columns[:, 0] / STEP - 1.0
+    assert columns[0, 0] == pytest.approx(2.5)
+    assert columns[:, 1:] == pytest.approx(n[:, None] * [1.5, 3.0, 3.0])
     assert CliRunner().invoke(app, ["histories", *words]).output == file.read_text()
 
 
@@ -223,17 +223,17 @@ def test_transient_is_cut_off(tmp_path: Path) -> None:
 
 def test_uneven_records_are_evened(tmp_path: Path) -> None:
     t = np.cumsum(np.where(np.arange(60) % 2, 0.2, 0.3))
-    found = records_of([Run(run_of(tmp_path / "run", 7.0 * t, t))], "effective_tension", [0.0])
-    assert found.step == pytest.approx(0.2)
-    assert np.diff(found.values[0][:, 0]) == pytest.approx(np.full(73, 7.0 * found.step))
+    records = records_of([Run(run_of(tmp_path / "run", 7.0 * t, t))], "effective_tension", [0.0])
+    assert records.step == pytest.approx(0.2)
+    assert np.diff(records.values[0][:, 0]) == pytest.approx(np.full(73, 7.0 * records.step))
 
 
 def test_even_records_stay_what_they_are_beside_an_odd_last_one(tmp_path: Path) -> None:
     """The end of a stage is recorded, too, though it is no multiple of the interval."""
     t = np.append(STEP * np.arange(1, 401), 400.3 * STEP)
     x = np.sin(2.0 * np.pi * t / PERIOD)
-    found = records_of([Run(run_of(tmp_path / "run", x, t))], "effective_tension", [0.0])
-    assert found.values[0][:, 0] == pytest.approx(x[:-1], abs=1e-9)
+    records = records_of([Run(run_of(tmp_path / "run", x, t))], "effective_tension", [0.0])
+    assert records.values[0][:, 0] == pytest.approx(x[:-1], abs=1e-9)
 
 
 def test_too_few_values_at_the_step_of_another_run(tmp_path: Path) -> None:
@@ -245,13 +245,13 @@ def test_too_few_values_at_the_step_of_another_run(tmp_path: Path) -> None:
 
 def test_runs_of_unlike_steps_get_the_longest(tmp_path: Path) -> None:
     folders = run_of(tmp_path / "a", np.zeros(80)), run_of(tmp_path / "b", np.zeros(40), 2.0 * STEP * np.arange(1, 41))
-    found = records_of([Run(folder) for folder in folders], "effective_tension", None)
-    assert found.step == pytest.approx(2.0 * STEP)
-    assert [len(values) for values in found.values] == [40, 40]
+    records = records_of([Run(folder) for folder in folders], "effective_tension", None)
+    assert records.step == pytest.approx(2.0 * STEP)
+    assert [len(values) for values in records.values] == [40, 40]
 
 
 @pytest.mark.parametrize(
-    ("name", "arcs", "more", "reported"),
+    ("name", "arcs", "more", "message"),
     [
         ("tension", None, {}, "--of tension: is none of the outputs in time; they are position, effective_tension"),
         ("end_force", None, {}, "--of end_force: end_force is a vector; write end_force.x, .y, .z or .size"),
@@ -261,11 +261,11 @@ def test_runs_of_unlike_steps_get_the_longest(tmp_path: Path) -> None:
         ("effective_tension", None, {"stage": "lay"}, 'RUN: "lay" is no dynamic stage of the run; its dynamic stages:'),
     ],
 )
-def test_what_is_refused(tmp_path: Path, name: str, arcs: Any, more: Any, reported: str) -> None:
+def test_what_is_refused(tmp_path: Path, name: str, arcs: Any, more: Any, message: str) -> None:
     folder = run_of(tmp_path / "run", np.arange(40.0))
     with pytest.raises(ResultsError) as refused:
         records_of([Run(folder)], name, arcs, **more)
-    assert str(refused.value).replace(str(folder), "RUN").startswith(reported)
+    assert str(refused.value).replace(str(folder), "RUN").startswith(message)
 
 
 @pytest.fixture(scope="module")
@@ -311,12 +311,12 @@ def test_too_coarse_records_are_warned_of(tmp_path: Path) -> None:
     t = np.arange(1, 400) * 1.0
     folder = run_of(tmp_path / "run", np.sin(2.0 * np.pi * t / PERIOD), t)
     done = called(str(folder), "--of", "end_force.x")
-    reported = "warning: there are only 8 records in a zero-crossing period, so that peaks may be missed by 7.6 %"
-    assert reported in done.output
+    warning = "warning: there are only 8 records in a zero-crossing period, so that peaks may be missed by 7.6 %"
+    assert warning in done.output
 
 
 @pytest.mark.parametrize(
-    ("words", "reported"),
+    ("words", "message"),
     [
         (("--of", "end_force.x", "--at", "top"), "--at top: must be start or end; other places are given by --arc"),
         (("--of", "end_force.x", "--confidence", "95"), "--confidence 95: must lie between 0 and 1"),
@@ -325,10 +325,10 @@ def test_too_coarse_records_are_warned_of(tmp_path: Path) -> None:
         (("--of", "end_force.x", "--plot", "x.pdf"), "x.pdf: a picture is a .png file; change its ending"),
     ],
 )
-def test_wrong_calls(seeds: list[str], words: tuple[str, ...], reported: str) -> None:
+def test_wrong_calls(seeds: list[str], words: tuple[str, ...], message: str) -> None:
     done = called(seeds[0], *words)
     assert done.exit_code == 2
-    assert done.output == f"{reported}\n"
+    assert done.output == f"{message}\n"
 
 
 def test_no_table_is_left_where_the_picture_is_refused(seeds: list[str], tmp_path: Path) -> None:

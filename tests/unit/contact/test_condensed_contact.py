@@ -104,7 +104,7 @@ def test_the_part_takes_over_what_was_found_at_a_step_s_end(method: str, monkeyp
     case.at(case.moved(0.0, 0.0, -0.01))
     expected = readings(other.contact, end)
     monkeypatch.setattr(case.contact, {"node": "_find_touching", "surface": "_evaluate"}[method], None)
-    found = readings(case.contact, end)
+    kept = readings(case.contact, end)
     assert all(np.abs(values).max() > 0.0 for values in expected)
-    for values, wanted in zip(found, expected, strict=True):
+    for values, wanted in zip(kept, expected, strict=True):
         np.testing.assert_allclose(values, wanted, rtol=1e-9, atol=1e-12 * np.abs(wanted).max())

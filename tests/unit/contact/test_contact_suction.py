@@ -64,9 +64,9 @@ def test_every_step_dissipates_unless_it_tears(law: SuctionLaw, path: list[float
     history, begin = after(law, np.array([0.0])), np.array([0.0])
     for z in np.array(path)[:, None]:
         answer = law.update(z, history)
-        taken = answer.force * (z - begin)
+        work = answer.force * (z - begin)
         change = answer.stored - law.update(begin, history).stored
-        assert taken[0] - change[0] >= -1e-12
+        assert work[0] - change[0] >= -1e-12
         history, begin = answer.history, z
 
 

@@ -62,9 +62,9 @@ def test_map_is_inverted(nv: int) -> None:
     points, nodes = deformed_facet(nv), np.arange(nv)
     for place in PLACES[nv]:
         xy = shape(nv, *place)[0] @ points[:, :2]
-        converged, *found = invert(xy, points, nodes, np.empty((nv, 3)))
+        converged, *local = invert(xy, points, nodes, np.empty((nv, 3)))
         assert converged
-        np.testing.assert_allclose(found, place, atol=1e-13)
+        np.testing.assert_allclose(local, place, atol=1e-13)
 
 
 def test_degenerate_facet_is_not_inverted() -> None:
@@ -148,9 +148,9 @@ def test_compiled_code_knows_the_same_places_to_be_covered(nv: int) -> None:
     xy = np.vstack([random.uniform([-0.5, -0.5], [3.0, 2.5], size=(200, 2)), corners])
     for deformed in (points, points + 0.02 * random.standard_normal(points.shape)):
         cover.renew(deformed)
-        found, _ = search.locate(xy, deformed)
-        assert 0 < np.count_nonzero(found < 0) < len(xy)
-        for place, wanted in zip(xy, found, strict=True):
+        places, _ = search.locate(xy, deformed)
+        assert 0 < np.count_nonzero(places < 0) < len(xy)
+        for place, wanted in zip(xy, places, strict=True):
             assert facet_below(cover, *place, -1) == wanted
             for known in (0, wanted, len(facets) - 1):
                 assert (facet_below(cover, *place, known) >= 0) == (wanted >= 0)

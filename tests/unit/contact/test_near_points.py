@@ -66,12 +66,12 @@ def test_no_point_within_the_gap_is_passed_over(
     axis, surface = axis_of(stretch, bend), soil(turned)
     facets = np.repeat(np.arange(len(surface.facets)), 2)
     pairs = np.tile([0, 1], len(surface.facets)), facets
-    found, tried = (near_points(axis, surface, *pairs, within) for within in (WITHIN, 1e3))
+    lists, tried = (near_points(axis, surface, *pairs, within) for within in (WITHIN, 1e3))
     assert len(tried.number) == surface.parts[:, :2].prod(axis=1).sum()
     near = tried.gap < WITHIN
     assert 5 < near.sum() < len(near)
     for name in ("number", "element", "along", "gap"):
-        np.testing.assert_array_equal(getattr(found, name), getattr(tried, name)[near])
+        np.testing.assert_array_equal(getattr(lists, name), getattr(tried, name)[near])
 
 
 def test_points_beyond_the_workspace_are_counted_and_given_workspace(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -82,8 +82,8 @@ def test_points_beyond_the_workspace_are_counted_and_given_workspace(monkeypatch
     assert fill_near(axis, surface, by_facet(elements, facets, 2), WITHIN, few) == len(wanted.number) > 3
     np.testing.assert_array_equal(few.number, wanted.number[:3])
     monkeypatch.setattr("riser_soil.contact.near_points.FEW", 3)
-    for got, reported in zip(near_points(axis, surface, elements, facets, WITHIN), wanted, strict=True):
-        np.testing.assert_array_equal(got, reported)
+    for got, expected in zip(near_points(axis, surface, elements, facets, WITHIN), wanted, strict=True):
+        np.testing.assert_array_equal(got, expected)
 
 
 @pytest.mark.parametrize("along", [(1.0, 0.0), (0.0, 1.0), (0.6, 0.8), (-0.8, 0.6)])
@@ -92,7 +92,7 @@ def test_points_of_a_triangle_sum_its_area_and_its_moments(along: tuple[float, f
     """To second order in their spacing; none lies farther across the riser from the next than asked for."""
     at = np.array([[0.0, 0.0, 0.1], [0.9, 0.2, 0.0], [0.3, 0.7, 0.4]])[corners]
     points = np.concatenate([at, 0.5 * (at + np.roll(at, -1, axis=0))])
-    moment, found = np.mean([np.outer(x, x) for x in points[3:]], axis=0), []
+    moment, moments = np.mean([np.outer(x, x) for x in points[3:]], axis=0), []
     for spacing in (0.05, 0.025):
         near = all_points(points, along, spacing)
         area = 0.5 * float(np.linalg.norm(np.cross(at[1] - at[0], at[2] - at[0])))
@@ -101,9 +101,9 @@ def test_points_of_a_triangle_sum_its_area_and_its_moments(along: tuple[float, f
         x = at[0] + xi[:, None] * (at[1] - at[0]) + eta[:, None] * (at[2] - at[0])
         assert (np.minimum(np.minimum(xi, eta), 1.0 - xi - eta) > 0.0).all()
         assert len(np.unique(near.number)) == len(near.number)
-        found.append(np.abs(np.einsum("n,ni,nj->ij", near.area, x, x) / area - moment).max())
-    assert found[0] < 5e-3
-    assert found[1] < 0.3 * found[0]
+        moments.append(np.abs(np.einsum("n,ni,nj->ij", near.area, x, x) / area - moment).max())
+    assert moments[0] < 5e-3
+    assert moments[1] < 0.3 * moments[0]
 
 
 def all_points(points: Array, along: tuple[float, float], spacing: float) -> NearPoints:

@@ -68,9 +68,9 @@ def test_the_first_guess_lands_as_it_does_beside_soil(dimension: int) -> None:
     radius, guess = np.full(at.line.length.size, 0.1), at.state(1)
     alone = SeabedContact(at.line, radius, ground, ROUND)
     beside, below = (SeabedContact(at.line, radius, ground, ROUND, covering=beyond(x)) for x in (1e6, -1e6))
-    found = alone.predict(guess)
-    assert np.abs(found - guess.u).max() > 0.0
-    np.testing.assert_array_equal(found, beside.predict(guess))
+    predicted = alone.predict(guess)
+    assert np.abs(predicted - guess.u).max() > 0.0
+    np.testing.assert_array_equal(predicted, beside.predict(guess))
     np.testing.assert_array_equal(guess.u, below.predict(guess))
 
 

@@ -100,8 +100,8 @@ def test_points_are_answered_each_for_itself(law: NormalLaw, way: list[float], e
     whole = law.update(np.asfortranarray(z), np.asfortranarray(histories))
     for n in range(6):
         at, one = np.unravel_index(n, (2, 3)), law.update(z.ravel()[n : n + 1], alone[n])
-        for found, expected in zip(whole, one, strict=True):
-            np.testing.assert_allclose(found[at], expected[0], rtol=1e-12, atol=1e-12)
+        for answer, expected in zip(whole, one, strict=True):
+            np.testing.assert_allclose(answer[at], expected[0], rtol=1e-12, atol=1e-12)
 
 
 @every_law
@@ -110,8 +110,8 @@ def test_points_are_answered_each_for_itself(law: NormalLaw, way: list[float], e
 def test_what_may_not_act_does_not(law: NormalLaw, way: list[float], end: float) -> None:
     """The loops over stations leave it out."""
     history, z = after(law, np.array(way)), np.array([end])
-    found = law.update(z, history)
-    assert law.active(z, history)[0] or not (found.force[0] or found.slope[0] or found.stored[0])
+    answer = law.update(z, history)
+    assert law.active(z, history)[0] or not (answer.force[0] or answer.slope[0] or answer.stored[0])
 
 
 @given(angle=st.floats(-3.1, 3.1), lean=st.floats(-1.2, 1.2), origin=st.tuples(numbers, numbers))
@@ -154,8 +154,8 @@ def test_stuck_ground_resists_by_its_stiffness_along_itself(given: list[float], 
     t = vector_of(along, elastic_guess(along, (0.0, 0.0, 0.0), k, tuple(moved)))
     np.testing.assert_allclose(t, -k * ground @ moved, atol=1e-9)
     stuck = ((1.0, 0.0), (0.0, 1.0))
-    found = resistance_by_position(along, k, stuck, (0.0, 0.0), tuple(n))
-    np.testing.assert_allclose(found, k * ground, atol=1e-9)
+    resistance = resistance_by_position(along, k, stuck, (0.0, 0.0), tuple(n))
+    np.testing.assert_allclose(resistance, k * ground, atol=1e-9)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -167,14 +167,14 @@ def test_covered_stations_feel_nothing_and_keep_their_history(dimension: int) ->
     free = SeabedContact(at.line, radius, ground, law)
     part = SeabedContact(at.line, radius, ground, law, covering=beyond(middle))
     state = at.state(1)
-    seen, all_of_it = (contact.kernel_data().found for contact in (part, free))
+    held_clear, all_of_it = (contact.kernel_data().found for contact in (part, free))
     for contact in (part, free):
         contact.find(state)
-    covered = at.line.to_global(seen.position)[..., 0] > middle
+    covered = at.line.to_global(held_clear.position)[..., 0] > middle
     assert covered.any()
     assert not covered.all()
-    assert np.all(seen.penetration[covered] == -np.inf)
-    np.testing.assert_array_equal(seen.penetration[~covered], all_of_it.penetration[~covered])
+    assert np.all(held_clear.penetration[covered] == -np.inf)
+    np.testing.assert_array_equal(held_clear.penetration[~covered], all_of_it.penetration[~covered])
     clear, force = part.contact_along_line(state)
     assert np.isinf(clear[covered.ravel()]).all()
     assert not force[covered.ravel()].any()

@@ -119,10 +119,10 @@ def test_strips_reach_to_the_next_nodes_across() -> None:
     number = np.arange(12).reshape(3, 4)
     cells = [number[i : i + 2, j : j + 2] for i in range(2) for j in range(3)]
     quads = np.array([[n[0, 0], n[1, 0], n[1, 1], n[0, 1]] for n in cells])
-    found = strips(quads)
-    assert found[1].tolist() == [1, 5, 6, 2, 0, 4, 7, 3]
-    assert found[3].tolist() == [4, 8, 9, 5, 4, 8, 10, 6]
-    assert (found[:, :4] == quads).all()
+    widths = strips(quads)
+    assert widths[1].tolist() == [1, 5, 6, 2, 0, 4, 7, 3]
+    assert widths[3].tolist() == [4, 8, 9, 5, 4, 8, 10, 6]
+    assert (widths[:, :4] == quads).all()
 
 
 def test_what_points_remember_goes_over_to_those_that_lie_there_next() -> None:

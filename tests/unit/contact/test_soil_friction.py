@@ -22,9 +22,9 @@ KINDS = pytest.mark.parametrize("kind", ["quad4", "tri6"])
 DIMENSIONS = pytest.mark.parametrize("dimension", [2, 3])
 
 
-def with_friction(made: PipeOnSurface, held: Array | None = None) -> SoilFriction:
+def with_friction(made: PipeOnSurface, limit: Array | None = None) -> SoilFriction:
     """held (nf,): adhesion of the facets [Pa]."""
-    adhesion = None if held is None else lambda facet, z: held[facet]
+    adhesion = None if limit is None else lambda facet, z: limit[facet]
     return SoilFriction(made.contact, AXIAL, LATERAL, ALONG_ITSELF, adhesion)
 
 
@@ -96,10 +96,10 @@ def dragged(made: PipeOnSurface, friction: SoilFriction, way: float) -> float:
 def test_dragged_far_it_resists_with_the_adhesion_of_what_touches() -> None:
     """Of each point, or with mu times its pressure where that is less; all of it comes into force at A/k."""
     made = pipe_on_surface(level(), top("quad4"))
-    held = clay(made)
-    friction = with_friction(made, held)
+    limit = clay(made)
+    friction = with_friction(made, limit)
     pressed = made.contact.evaluate(made.state()).pressed
-    most = np.minimum(AXIAL * pressed.force, held[pressed.points.facet] * pressed.points.area)
+    most = np.minimum(AXIAL * pressed.force, limit[pressed.points.facet] * pressed.points.area)
     assert -dragged(made, friction, 0.05) == pytest.approx(most.sum(), rel=1e-2)
     assert most.sum() < 0.9 * AXIAL * pressed.force.sum()
 
@@ -170,17 +170,17 @@ def test_a_closed_way_gives_no_work(adhesive: bool) -> None:
     """Dissipated in each step, and no more than is taken from the riser in all."""
     made = pipe_on_surface(level(), top("quad4"))
     friction = with_friction(made, clay(made) if adhesive else None)
-    taken, lost = 0.0, []
+    work, lost = 0.0, []
     angles = np.linspace(0.0, 2.0 * np.pi, 25)
     corners = 0.02 * np.stack([np.cos(angles), np.sin(angles), 0.2 * np.sin(3.0 * angles)], axis=1)
     for step in np.diff(corners, axis=0, prepend=corners[-1:]):
         state = made.state(moved(made, tuple(step)))
         lost.append(friction.work(made.state(), state).dissipated)
-        taken += float(made.residual(state.u, friction) @ state.u)
+        work += float(made.residual(state.u, friction) @ state.u)
         made.commit(state.u, friction)
     assert min(lost) >= 0.0
     stored = friction.energy(made.state()).potential  # less what the next step loses as its directions are others
-    assert 0.999 * taken < sum(lost) + stored <= taken
+    assert 0.999 * work < sum(lost) + stored <= work
 
 
 def test_a_rough_pipe_holds_the_soil_that_flows_aside() -> None:

@@ -26,17 +26,17 @@ CYCLE = (0.0, 0.06, 0.052, 0.06, 0.052, 0.06, -0.005)  # m
 
 def along(law: NormalLaw, path: Array, history: Array | None = None) -> Array:
     """Work (n,) of the law in each step of a path from the surface."""
-    history, z, found = law.initial_history((1,)) if history is None else history, np.zeros(1), []
+    history, z, works = law.initial_history((1,)) if history is None else history, np.zeros(1), []
     for end in path:
-        found.append(work_along_step(law, z, np.array([end]), history)[0])
+        works.append(work_along_step(law, z, np.array([end]), history)[0])
         history, z = law.update(np.array([end]), history).history, np.array([end])
-    return np.array(found)
+    return np.array(works)
 
 
 def test_penalty_gives_back_all() -> None:
     law, z = Penalty(1e5, 1e-3), np.array([-0.3, -5e-4, 0.0, 2e-3, 0.1])
-    found = work_along_step(law, np.full(5, -0.2), z, np.empty((5, 0)))
-    np.testing.assert_array_equal(found, law.potential(z))
+    work = work_along_step(law, np.full(5, -0.2), z, np.empty((5, 0)))
+    np.testing.assert_array_equal(work, law.potential(z))
 
 
 @pytest.mark.parametrize("steps", [1, 3, 20])
@@ -44,8 +44,8 @@ def test_breaking_away_takes_half_the_cap_times_the_reach_in_any_steps(steps: in
     cap, reach = 500.0, 0.02
     law = SuctionLaw(Penalty(1e5), cap, reach)
     history = after(law, np.array([0.0]))
-    taken = along(law, through(0.0, -3.0 * reach, steps=steps), history).sum()
-    assert taken == pytest.approx(0.5 * cap * reach, rel=0.02)
+    work = along(law, through(0.0, -3.0 * reach, steps=steps), history).sum()
+    assert work == pytest.approx(0.5 * cap * reach, rel=0.02)
 
 
 @every_law
@@ -99,11 +99,11 @@ def pressed(law: NormalLaw, steps: int) -> tuple[float, float]:
 @every_law
 def test_a_slow_cycle_on_the_seabed_is_its_loop(law: NormalLaw) -> None:
     loop = along(law, through(*CYCLE, steps=400)).sum() * LENGTH
-    found = {steps: pressed(law, steps) for steps in (8, 16)}
-    assert found[8][0] == pytest.approx(loop, rel=0.01)
-    assert found[16][0] == pytest.approx(loop, rel=3e-3)
-    assert found[8][1] / found[16][1] == pytest.approx(2.0, rel=0.2)
-    assert found[8][1] > 0.1 * loop
+    loops = {steps: pressed(law, steps) for steps in (8, 16)}
+    assert loops[8][0] == pytest.approx(loop, rel=0.01)
+    assert loops[16][0] == pytest.approx(loop, rel=3e-3)
+    assert loops[8][1] / loops[16][1] == pytest.approx(2.0, rel=0.2)
+    assert loops[8][1] > 0.1 * loop
 
 
 def test_ground_that_gives_back_all_dissipates_nothing() -> None:

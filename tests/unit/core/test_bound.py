@@ -66,9 +66,9 @@ UNFIT = "an array that is not contiguous or may not be written"
 
 
 @pytest.mark.parametrize(
-    ("value", "reported"),
+    ("value", "message"),
     [("steel", "str"), (np.zeros((2, 8))[:, ::2], UNFIT), (np.broadcast_to(np.ones(4), (2, 4)), UNFIT)],
 )
-def test_what_cannot_be_packed_is_reported(value: Any, reported: str) -> None:
-    with pytest.raises(TypeError, match=f"{reported} can't be packed"):
+def test_what_cannot_be_packed_is_reported(value: Any, message: str) -> None:
+    with pytest.raises(TypeError, match=f"{message} can't be packed"):
         Packed(Inner(True, False, value))

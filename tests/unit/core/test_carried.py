@@ -22,8 +22,8 @@ def test_a_linear_field_goes_along_with_the_way() -> None:
     within = ((places[:, 1:] > 1.5) & (places[:, 1:] < 9.5)).all(axis=1)
     asked = places[within] + np.array([0.0, 0.1, 0.1]) * rng.uniform(-1.0, 1.0, (int(within.sum()), 3))
     slope = np.array([[0.0], [2.0], [-3.0]])
-    found = carried(places, places @ slope, asked)
-    missed = np.abs(found - asked @ slope)
+    values = carried(places, places @ slope, asked)
+    missed = np.abs(values - asked @ slope)
     assert np.median(missed) < 0.005
     assert missed.max() < 0.03
 
@@ -31,23 +31,23 @@ def test_a_linear_field_goes_along_with_the_way() -> None:
 def test_points_that_stay_keep_what_they_hold_and_others_do_not_exceed_it() -> None:
     rng = np.random.default_rng(2)
     places = scattered(rng)
-    held = rng.uniform(size=(len(places), 2))
-    np.testing.assert_array_equal(carried(places, held, places), held)
-    found = carried(places, held, places + np.array([0.0, 0.3, -0.2]))
-    assert found.min() >= held.min()
-    assert found.max() <= held.max()
-    assert (found != held).any()
+    values = rng.uniform(size=(len(places), 2))
+    np.testing.assert_array_equal(carried(places, values, places), values)
+    moved = carried(places, values, places + np.array([0.0, 0.3, -0.2]))
+    assert moved.min() >= values.min()
+    assert moved.max() <= values.max()
+    assert (moved != values).any()
 
 
 def test_a_field_does_not_stick_to_the_mesh() -> None:
     """Forty ways of a twentieth of the distance between points: what is nearest would stay where it was."""
     y, z = np.meshgrid(np.arange(30.0), np.arange(5.0), indexing="ij")
     places = np.stack([0.0 * y.ravel(), y.ravel(), z.ravel()], axis=1)
-    held = np.exp(-(((places[:, 1:2] - 18.0) / 4.0) ** 2))
-    middle = [float(places[:, 1] @ held[:, 0] / held.sum())]
+    values = np.exp(-(((places[:, 1:2] - 18.0) / 4.0) ** 2))
+    middle = [float(places[:, 1] @ values[:, 0] / values.sum())]
     for _ in range(40):
-        held = carried(places, held, places + np.array([0.0, 0.05, 0.0]))
-        middle.append(float(places[:, 1] @ held[:, 0] / held.sum()))
+        values = carried(places, values, places + np.array([0.0, 0.05, 0.0]))
+        middle.append(float(places[:, 1] @ values[:, 0] / values.sum()))
     assert middle[0] - middle[-1] == pytest.approx(2.0, rel=0.03)
 
 

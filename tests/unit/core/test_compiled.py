@@ -43,9 +43,9 @@ def test_what_cant_be_written_is_replaced_by_a_private_folder(
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "tmp"))
     folder = compiled.choose_folder("0" * 16)
     assert folder == tmp_path / "tmp" / f"riser_soil-{os.getuid()}" / ("0" * 16)
-    (reported,) = capfd.readouterr().err.splitlines()
-    assert str(tmp_path / "file") in reported
-    assert reported.endswith(f"{folder} is used")
+    (line,) = capfd.readouterr().err.splitlines()
+    assert str(tmp_path / "file") in line
+    assert line.endswith(f"{folder} is used")
     folder.parent.chmod(0o777)
     other = compiled.choose_folder("0" * 16)
     assert other.is_dir()
@@ -72,8 +72,8 @@ def test_old_versions_go_and_nothing_else(tmp_path: Path) -> None:
         path.mkdir()
         os.utime(path, (path.stat().st_mtime - age * DAY,) * 2)
     kernel_cache.remove_old(tmp_path, keep=versions[7])
-    left = set(tmp_path.iterdir())
-    assert left == {*versions[:4], versions[7], *bystanders}
+    remaining = set(tmp_path.iterdir())
+    assert remaining == {*versions[:4], versions[7], *bystanders}
 
 
 def test_versions_in_use_stay(tmp_path: Path) -> None:
@@ -92,18 +92,18 @@ vector(np.ones(3))
 
 
 def test_compiling_is_announced_once_by_the_first_rank(tmp_path: Path) -> None:
-    def reported(rank: str) -> str:
+    def output_of(rank: str) -> str:
         environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path), "OMPI_COMM_WORLD_RANK": rank}
         environment.pop("NUMBA_CACHE_DIR", None)
         return subprocess.run([sys.executable, "-c", KERNEL], env=environment, capture_output=True, text=True).stderr
 
-    assert reported("1") == ""
+    assert output_of("1") == ""
     assert not list(tmp_path.rglob("announced"))
     for path in tmp_path.rglob("*.nbi"):
         path.unlink()
-    assert reported("0") == compiled.ANNOUNCEMENT + "\n"
+    assert output_of("0") == compiled.ANNOUNCEMENT + "\n"
     assert list(tmp_path.rglob("*.nbc"))
-    assert reported("0") == ""
+    assert output_of("0") == ""
 
 
 def test_processes_may_start_at_once(tmp_path: Path) -> None:

@@ -71,6 +71,6 @@ def test_a_run_without_memory_ends_in_plain_words(tmp_path: Path, monkeypatch: p
     (tmp_path / "scene.yaml").write_text(json.dumps(on_fine_soil()), encoding="utf-8")
     done = CliRunner().invoke(app, ["run", str(tmp_path / "scene.yaml"), "-o", str(tmp_path / "out")])
     assert done.exit_code == 3
-    (reported,) = done.stderr.strip().splitlines()
-    assert re.search(r"\d unknowns .*out of memory: .* \d", reported)
-    line_with([reported], "INFOG(1) = -19", "larger cells", "smaller block")
+    (line,) = done.stderr.strip().splitlines()
+    assert re.search(r"\d unknowns .*out of memory: .* \d", line)
+    line_with([line], "INFOG(1) = -19", "larger cells", "smaller block")

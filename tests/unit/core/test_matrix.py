@@ -78,15 +78,15 @@ def test_patterns_known_from_before_serve_as_long_as_they_are_of_the_same_entrie
         chain = Chain(np.arange(4.0), prescribed=fixed)
         numbering = Numbering(MPI.COMM_SELF, [chain])
         blocks = {"riser": chain.pairs(), "extra": MatrixBlock(np.array([[3, 1]]), np.array([columns]))}
-        before, found = known.get("riser"), []
+        before, matrices = known.get("riser"), []
         for patterns in (known, None):
             matrix = Matrix(numbering, blocks, False, patterns)
             matrix.values["riser"][...] = np.array([[1.0, -1.0], [-1.0, 1.0]])
             matrix.values["extra"][...] = [[5.0, 6.0], [7.0, 8.0]]
             matrix.assemble()
-            found.append([each.copy() for each in matrix.stored.csr()])
+            matrices.append([each.copy() for each in matrix.stored.csr()])
             matrix.destroy()
-        for one, other in zip(*found, strict=True):
+        for one, other in zip(*matrices, strict=True):
             assert np.array_equal(one, other)
         assert (known["riser"] is before) == (columns == [1, 2] and fixed)
         numbering.destroy()
@@ -122,8 +122,8 @@ def test_magnitudes_are_sums_of_absolute_values_over_the_blocks() -> None:
     matrix = Matrix(numbering, {"riser": chain.pairs(), "extra": extra}, symmetric=True)
     matrix.values["riser"][...] = np.array([[1.0, -1.0], [-1.0, 1.0]])
     matrix.values["extra"][...] = -2.0
-    found = matrix.magnitudes(np.array([1.0, 10.0, 100.0, 1000.0]))
-    assert found == pytest.approx(np.array([11.0, 121.0, 1210.0, 1100.0 + 2000.0]))
+    sums = matrix.magnitudes(np.array([1.0, 10.0, 100.0, 1000.0]))
+    assert sums == pytest.approx(np.array([11.0, 121.0, 1210.0, 1100.0 + 2000.0]))
     matrix.destroy()
     numbering.destroy()
 

@@ -55,8 +55,8 @@ def test_a_new_entry_is_in_the_files_with_its_unit_and_text(toys: tuple[Path, st
     assert times == run.time.tolist()
     with h5py.File(run.folder / "results.nc") as file:
         assert set(file) & {*outputs.choices(), "height"} == {"height"}
-        reported = {name: file["height"].attrs[name] for name in ("units", "long_name", "sign_convention")}
-        assert reported == {"units": HEIGHT.units, "long_name": HEIGHT.text, "sign_convention": HEIGHT.sign}
+        attributes = {name: file["height"].attrs[name] for name in ("units", "long_name", "sign_convention")}
+        assert attributes == {"units": HEIGHT.units, "long_name": HEIGHT.text, "sign_convention": HEIGHT.sign}
         assert file["stored_energy"].attrs["long_name"] == WHOLE_ENERGY.text
         assert file["stored_energy"].shape == file["step"].shape
 
@@ -67,11 +67,11 @@ def test_a_new_entry_of_the_soil_is_in_its_frames(toys: tuple[Path, str]) -> Non
 
 
 def test_a_new_entry_is_in_the_summary_with_its_extremes_and_on_the_screen(toys: tuple[Path, str]) -> None:
-    run, (reported,) = Run(toys[0] / "solved"), Run(toys[0] / "solved").summary["stages"]
+    run, (stage,) = Run(toys[0] / "solved"), Run(toys[0] / "solved").summary["stages"]
     highest = run["height"][-1].argmax()
-    assert reported["final"]["max_height"] == {"value": run["height"][-1, highest], "arc": run.arc[highest]}
-    assert list(reported["final"])[-2:] == ["contact_force", "max_height"]
-    assert reported["extremes"]["max_height"]["max"] == run["height"][-1, highest]
+    assert stage["final"]["max_height"] == {"value": run["height"][-1, highest], "arc": run.arc[highest]}
+    assert list(stage["final"])[-2:] == ["contact_force", "max_height"]
+    assert stage["extremes"]["max_height"]["max"] == run["height"][-1, highest]
     row = rf"greatest height +│ +{1e-3 * run['height'][-1, highest]:.5g} km at {run.arc[highest]:.5g} m"
     assert re.search(row, toys[1])
     heave = Run(toys[0] / "told").summary["stages"][1]["extremes"]["max_height"]

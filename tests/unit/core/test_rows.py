@@ -56,8 +56,8 @@ def test_polynomials_have_their_values_and_derivatives(N: Size) -> None:
     values = [np.sum(each * x**powers) for each in (first, second)]
     slopes = [np.sum(each[1:] * powers[1:] * x ** (powers[1:] - 1)) for each in (first, second)]
     expected = np.array([*values, *slopes]).view(float)
-    for found in (_polynomials, two_polynomials):
-        np.testing.assert_allclose(found(c, 4 * len(N), x.real, x.imag, N), expected, atol=1e-14)
+    for function in (_polynomials, two_polynomials):
+        np.testing.assert_allclose(function(c, 4 * len(N), x.real, x.imag, N), expected, atol=1e-14)
 
 
 @njit
@@ -143,12 +143,12 @@ def test_rows_of_three_stations_are_written_at_once(d: int, r: int) -> None:
         return rng.normal(size=4), rng.normal(size=(d, d)), rng.normal(size=(d, n))
 
     stations = tuple((rng.normal(size=4), (term(), term())) for _ in range(3))
-    expected, found, interpreted = np.zeros((4, d, n)), np.full((4, d, n), np.nan), np.full((4, d, n), np.nan)
+    expected, written, interpreted = np.zeros((4, d, n)), np.full((4, d, n), np.nan), np.full((4, d, n), np.nan)
     for weights, terms in stations:
         _weighed(expected, weights, terms, fixed(d), fixed(r))
     write_weighed(interpreted, stations, fixed(d), fixed(r))
-    _write_weighed(found, stations, fixed(d), fixed(r))
-    np.testing.assert_allclose(found, expected, rtol=1e-12)
+    _write_weighed(written, stations, fixed(d), fixed(r))
+    np.testing.assert_allclose(written, expected, rtol=1e-12)
     np.testing.assert_allclose(interpreted, expected, rtol=1e-12)
 
 
@@ -159,10 +159,10 @@ def test_blocks_of_rows_are_written_by_the_rows_of_a_matrix(d: int, r: int) -> N
     for c in range(n):
         block = 2 * (c // (d + r)) + (c % (d + r) >= d)
         expected[:, :, c] = 2.5 * np.outer(M[:, block], rows[:, c])
-    found, interpreted = np.empty_like(expected), np.empty_like(expected)
+    written, interpreted = np.empty_like(expected), np.empty_like(expected)
     write_blocks(interpreted, M, 2.5, rows, fixed(d), fixed(r))
-    _blocks(found, M, 2.5, rows, fixed(d), fixed(r))
-    np.testing.assert_allclose(found, expected, rtol=1e-13)
+    _blocks(written, M, 2.5, rows, fixed(d), fixed(r))
+    np.testing.assert_allclose(written, expected, rtol=1e-13)
     np.testing.assert_allclose(interpreted, expected, rtol=1e-13)
 
 
@@ -212,5 +212,5 @@ def test_each_function_is_its_plain_loops(seed: int) -> None:
     terms = tuple((rng.normal(size=4), rng.normal(size=(d, d)), rng.normal(size=(d, n))) for _ in range(2))
     given = rng.normal(size=5), rng.normal(size=(5, 4)), at, x, terms, rng.normal(size=(2, d, r))
     sizes = fixed(count), fixed(d), fixed(r)
-    for found, expected in zip(_all(*given, *sizes), _all.py_func(*given, *sizes), strict=True):
-        np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-14)
+    for result, expected in zip(_all(*given, *sizes), _all.py_func(*given, *sizes), strict=True):
+        np.testing.assert_allclose(result, expected, rtol=1e-12, atol=1e-14)

@@ -96,9 +96,9 @@ def walked(control: Control, n: int) -> tuple[float, float]:
     control.rejection(3e-4 * (control.dt / 0.04) ** 3)
     if n in (1, 5):
         control.cut()
-    found = control.target, control.dt
+    values = control.target, control.dt
     control.accept(easy=n % 3 != 0)
-    return found
+    return values
 
 
 def test_seconds_spent_before_count_too() -> None:
@@ -116,13 +116,13 @@ def test_a_summary_comes_back_as_it_was() -> None:
     for kind in ("static", "dynamic"):
         whole.begin_stage(kind, kind, automatic=False)
         whole.stage.implausible, whole.stage.lines[""].implausible = ("doubtful",), ("strained",)
-        tallied(whole, 0.1, Catenary(18.0, 30.0).seen(arc), residual=0.2)
+        tallied(whole, 0.1, Catenary(18.0, 30.0).record(arc), residual=0.2)
     again.restore(whole.state())
     assert repr(again.summary.as_dict()) == repr(whole.summary.as_dict())
     for each in (whole, again):
-        tallied(each, 0.2, Catenary(16.0, 20.0).seen(arc), residual=0.1)
+        tallied(each, 0.2, Catenary(16.0, 20.0).record(arc), residual=0.1)
         each.begin_stage("on", "dynamic", automatic=True)
-        tallied(each, 0.1, Catenary(17.0, 25.0).seen(arc), residual=0.3)
+        tallied(each, 0.1, Catenary(17.0, 25.0).record(arc), residual=0.3)
     assert repr(again.summary.as_dict()) == repr(whole.summary.as_dict())
 
 

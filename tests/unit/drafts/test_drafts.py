@@ -173,10 +173,10 @@ def test_what_is_not_asked_for_is_left_out() -> None:
 
 @pytest.mark.parametrize("value", [0.0, 0.1365, 50.0, 1025.0, 28208.4, 5.0e4, 99999.6, 3.7023e9, 1e-5, 123456.0])
 def test_numbers_are_floats_to_every_reader(value: float) -> None:
-    reported = number(value)
-    assert float(reported) == pytest.approx(value, rel=5e-4)
-    assert "." in reported
-    assert "e" not in reported or reported.partition("e")[2][0] in "+-"
+    text = number(value)
+    assert float(text) == pytest.approx(value, rel=5e-4)
+    assert "." in text
+    assert "e" not in text or text.partition("e")[2][0] in "+-"
 
 
 REFUSED = {
@@ -212,14 +212,14 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("reported", REFUSED)
+@pytest.mark.parametrize("message", REFUSED)
 def test_bad_input_is_reported_in_a_line_and_leaves_no_file(
-    reported: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    done = called(*REFUSED[reported])
+    done = called(*REFUSED[message])
     assert done.exit_code == 2
-    assert reported in done.output
+    assert message in done.output
     assert len(done.output.strip().splitlines()) == 1
     assert not list(tmp_path.iterdir())
 

@@ -72,9 +72,9 @@ def test_the_sea_shortens_lives() -> None:
 
 def test_numbers_of_a_curve_by_hand() -> None:
     """D in seawater with cathodic protection on both sides of 1e6 cycles; nothing for no stress."""
-    found = dnv_curve("D", "cathodic-protection").endurance(np.array([100.0, 50.0, 0.0]))
-    assert found[:2] == pytest.approx([10.0**11.764 / 100.0**3, 10.0**15.606 / 50.0**5], rel=1e-12)
-    assert found[2] == np.inf
+    endurance = dnv_curve("D", "cathodic-protection").endurance(np.array([100.0, 50.0, 0.0]))
+    assert endurance[:2] == pytest.approx([10.0**11.764 / 100.0**3, 10.0**15.606 / 50.0**5], rel=1e-12)
+    assert endurance[2] == np.inf
 
 
 def test_thick_walls_are_weaker_and_thin_ones_not_stronger() -> None:

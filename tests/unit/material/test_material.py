@@ -158,10 +158,10 @@ def test_a_fading_backstress_strains_on_under_a_mean_stress(material: Call) -> N
     """(1/k) ln[(a² - αmin²)/(a² - αmax²)] in each cycle, see riser_soil/soil/kinematic_hardening.py."""
     done = material(KINEMATIC, "gamma_xz [-]\n1e-4\n")
     assert done.exit_code == 0, done.output
-    reported = table("material_memory.csv")
-    largest, a, q0 = reported["stress_at_0.001"][0], 0.8 * SU, 0.2 * SU
+    memory = table("material_memory.csv")
+    largest, a, q0 = memory["stress_at_0.001"][0], 0.8 * SU, 0.2 * SU
     low, high = 0.1 * largest + q0, 0.7 * largest - q0
-    added = np.diff(reported["strain_of_stress_cycles"])
+    added = np.diff(memory["strain_of_stress_cycles"])
     np.testing.assert_allclose(added, 3.0 * a / E * np.log((a**2 - low**2) / (a**2 - high**2)), rtol=0.03)
     assert f"{added[-1]:.5f} more by the last" in done.output
 
@@ -170,9 +170,9 @@ def test_a_fading_backstress_strains_on_under_a_mean_stress(material: Call) -> N
 def test_closed_loops_keep_mean_stress_and_strain(material: Call, law: dict[str, Any]) -> None:
     done = material(law, "gamma_xz [-]\n1e-4\n")
     assert done.exit_code == 0, done.output
-    reported = table("material_memory.csv")
-    del reported["cycle"]
-    for name, values in reported.items():
+    memory = table("material_memory.csv")
+    del memory["cycle"]
+    for name, values in memory.items():
         np.testing.assert_allclose(values, values[0], rtol=1e-6, err_msg=name)
     assert law_of(law).forgets_at is None
 
@@ -197,7 +197,7 @@ def test_more_stress_than_the_soil_bears_is_reported_and_leaves_nothing(material
 
 
 @pytest.mark.parametrize(
-    ("path", "reported"),
+    ("path", "message"),
     [
         ("", "path.csv: the file is empty"),
         ("gamma_xz [-]\n", "path.csv:1: there are no rows below the header"),
@@ -210,16 +210,16 @@ def test_more_stress_than_the_soil_bears_is_reported_and_leaves_nothing(material
         ("time [s]\n1.0", "no strain and no stress beside time"),
     ],
 )
-def test_a_bad_path_is_reported_in_one_line(material: Call, path: str, reported: str) -> None:
+def test_a_bad_path_is_reported_in_one_line(material: Call, path: str, message: str) -> None:
     done = material(ELASTIC, path)
     assert done.exit_code == 2
-    assert reported in done.output
+    assert message in done.output
     assert done.output.count("\n") == 1
     assert not Path("scene_material").exists()
 
 
 @pytest.mark.parametrize(
-    ("options", "soil", "reported"),
+    ("options", "soil", "message"),
     [
         (("--depth", "1.5"), {}, "--depth 1.5: must lie in the soil, from 0 to 1 m"),
         (("--path", "no.csv"), {}, "no.csv: "),
@@ -228,11 +228,11 @@ def test_a_bad_path_is_reported_in_one_line(material: Call, path: str, reported:
     ],
 )
 def test_what_makes_no_sense_is_reported(
-    material: Call, options: tuple[str, ...], soil: dict[str, float], reported: str
+    material: Call, options: tuple[str, ...], soil: dict[str, float], message: str
 ) -> None:
     done = material(IWAN, None, *options, **soil)
     assert done.exit_code == 2
-    assert reported in done.output
+    assert message in done.output
     assert done.output.count("\n") == 1
 
 

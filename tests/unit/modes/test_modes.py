@@ -33,7 +33,7 @@ WATER, CA = 1025.0, 0.8
 G = 9.81
 
 
-def found(scene: Mapping, count: int, **more: Any) -> Modes:
+def lowest_modes(scene: Mapping, count: int, **more: Any) -> Modes:
     return modes_of(scene_from_mapping(scene), count, **more)
 
 
@@ -66,14 +66,14 @@ def tensioned_beam(n: Any, added: float = 0.0, EI: float = EI) -> Any:
 
 
 def test_beam_under_tension() -> None:
-    modes = found(stretched(), 4)
+    modes = lowest_modes(stretched(), 4)
     assert modes.frequency == pytest.approx(tensioned_beam([1, 2, 3, 4]), rel=1e-4)
     assert modes.asymmetry < 1e-9
     assert modes.stage == "stretch"
 
 
 def test_shapes_are_sines_of_height_one_across_the_pipe() -> None:
-    modes = found(stretched(), 3)
+    modes = lowest_modes(stretched(), 3)
     for n, shape in enumerate(modes.line.shape, 1):
         sine = np.sin(n * np.pi * modes.line.arc / LENGTH)
         assert np.abs(shape[:, 2]) == pytest.approx(np.abs(sine), abs=1e-4)
@@ -83,7 +83,7 @@ def test_shapes_are_sines_of_height_one_across_the_pipe() -> None:
 
 
 def test_error_falls_by_the_fourth_power_of_the_elements() -> None:
-    errors = [found(stretched(elements), 3).frequency[2] / tensioned_beam(3) - 1.0 for elements in (6, 12)]
+    errors = [lowest_modes(stretched(elements), 3).frequency[2] / tensioned_beam(3) - 1.0 for elements in (6, 12)]
     assert errors[0] > 0.0
     assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.3)
 
@@ -91,7 +91,7 @@ def test_error_falls_by_the_fourth_power_of_the_elements() -> None:
 def test_taut_string_in_water_moves_its_added_mass() -> None:
     """In space, in pairs: in and out of the plane."""
     pipe = BEAM | {"EI": 1.0, "GJ": 1.0e6, "added_mass": {"normal": CA}}
-    modes = found(stretched(dimension=3, pipe=pipe, water={"density": WATER}), 4)
+    modes = lowest_modes(stretched(dimension=3, pipe=pipe, water={"density": WATER}), 4)
     added = CA * WATER * np.pi * 0.3**2 / 4.0
     assert modes.frequency == pytest.approx(np.repeat(tensioned_beam([1, 2], added, EI=1.0), 2), rel=1e-4)
     assert modes.share[:, :2].sum(axis=1) == pytest.approx(np.ones(4))
@@ -120,7 +120,7 @@ def lying(*stages: Mapping, pipe: Mapping = BEAM, **more: Any) -> Mapping:
 
 
 def test_riser_on_springs_is_a_beam_on_an_elastic_foundation() -> None:
-    modes = found(lying(), 4)
+    modes = lowest_modes(lying(), 4)
     expected = np.sqrt((EI * (np.arange(1, 5) * np.pi / LENGTH) ** 4 + K_GROUND) / MASS) / (2.0 * np.pi)
     assert modes.frequency == pytest.approx(expected, rel=1e-4)
 
@@ -130,7 +130,7 @@ def test_friction_sticks() -> None:
     soft, mu, mobilisation = 4.0e4, 0.5, 0.1
     slid = static("slide", move={"start": [0.5, 0.0, PRESSED], "end": [LENGTH + 0.5, 0.0, PRESSED]})
     friction = {"axial": mu, "lateral": mu, "mobilisation": mobilisation}
-    modes = found(lying(slid, pipe=BEAM | {"EA": soft}, contact={"friction": friction}), 8)
+    modes = lowest_modes(lying(slid, pipe=BEAM | {"EA": soft}, contact={"friction": friction}), 8)
     stiffness = soft * (np.arange(1, 4) * np.pi / LENGTH) ** 2 + mu * MASS * G / mobilisation
     assert of_direction(modes, "axial")[:3] == pytest.approx(np.sqrt(stiffness / MASS) / (2.0 * np.pi), rel=3e-3)
 
@@ -151,7 +151,7 @@ def test_chain_that_hangs_in_water_swings_as_bessels_function() -> None:
         riser={"initial": {"points": [[0.0, 0.0, LENGTH], [0.0, 0.0, 0.0]]}},
         dimension=3,
     )
-    modes = found(hanging, 4)
+    modes = lowest_modes(hanging, 4)
     w, m = (MASS - WATER / 2.0 * volume) * G, MASS + CA * WATER / 2.0 * volume
     expected = jn_zeros(0, 2) / (4.0 * np.pi) * np.sqrt(w / (m * LENGTH))
     assert modes.frequency == pytest.approx(np.repeat(expected, 2), rel=1e-3)
@@ -186,7 +186,7 @@ def test_shallow_cable_has_irvines_frequencies() -> None:
 
     string = np.sqrt(H / MASS) / (2.0 * span)
     symmetric = 2.0 / np.pi * brentq(balance, np.pi / 2.0 + 1e-6, 3.0 * np.pi / 2.0 - 1e-6)
-    modes = found(cable(span, H, stiff), 6)
+    modes = lowest_modes(cable(span, H, stiff), 6)
     assert of_direction(modes, "out of plane")[:3] == pytest.approx(string * np.arange(1, 4), rel=1e-3)
     assert np.sort(of_direction(modes, "in plane"))[:2] == pytest.approx(
         np.sort([2.0 * string, symmetric * string]), rel=1e-3
@@ -231,12 +231,12 @@ def test_more_modes_than_there_are_may_be_asked_for() -> None:
 
 def test_half_waves_as_short_as_elements_have_no_shape() -> None:
     """Of a hinged beam of two elements the second mode, and of one element all: the nodes turn where they are."""
-    modes = found(stretched(2), 2)
+    modes = lowest_modes(stretched(2), 2)
     assert modes.direction == ["in plane", "at no node"]
     assert not modes.line.shape[1].any()
     assert np.isnan(modes.share[1]).all()
     assert modes.frequency == pytest.approx(tensioned_beam([1, 2]), rel=0.12)
-    assert found(stretched(1), 1).direction == ["at no node"]
+    assert lowest_modes(stretched(1), 1).direction == ["at no node"]
 
 
 def moment_at_the_tip(moment: float) -> Mapping:
@@ -253,9 +253,9 @@ def moment_at_the_tip(moment: float) -> Mapping:
 
 
 def test_a_tangent_far_from_symmetric_is_refused() -> None:
-    assert 0.0 < found(moment_at_the_tip(1.0e2), 2).asymmetry < 1e-3
+    assert 0.0 < lowest_modes(moment_at_the_tip(1.0e2), 2).asymmetry < 1e-3
     with pytest.raises(SolveError, match=telling("tangent at rest", "not symmetric", "more than 0.01", "leave out")):
-        found(moment_at_the_tip(1.0e4), 2)
+        lowest_modes(moment_at_the_tip(1.0e4), 2)
 
 
 def test_command_leaves_shapes_and_a_picture(tmp_path: Path) -> None:
@@ -277,7 +277,7 @@ def test_command_leaves_shapes_and_a_picture(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("stages", "name", "reported"),
+    ("stages", "name", "message"),
     [
         ([dynamic(1.0, 0.1)], None, "stages: modes are those of a riser at rest; begin with a static stage"),
         ([static("lay")], "hang", '--stage "hang": the scene has no such stage; it has lay'),
@@ -288,10 +288,10 @@ def test_command_leaves_shapes_and_a_picture(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_only_static_stages_have_modes(stages: list[Mapping], name: str | None, reported: str) -> None:
+def test_only_static_stages_have_modes(stages: list[Mapping], name: str | None, message: str) -> None:
     with pytest.raises(SceneError) as refused:
-        found(stretched(6) | {"stages": stages}, 2, stage=name)
-    assert str(refused.value) == reported
+        lowest_modes(stretched(6) | {"stages": stages}, 2, stage=name)
+    assert str(refused.value) == message
 
 
 def test_first_static_stage_may_be_asked_for() -> None:
@@ -299,8 +299,8 @@ def test_first_static_stage_may_be_asked_for() -> None:
     scene = stretched()
     slack = scene | {"stages": [static("lie"), *scene["stages"]]}
     alone = (np.pi / LENGTH) ** 2 * np.sqrt(EI / MASS) / (2.0 * np.pi)
-    assert found(slack, 1, stage="lie").frequency[0] == pytest.approx(alone, rel=1e-4)
-    assert found(slack, 1).frequency[0] == pytest.approx(tensioned_beam(1), rel=1e-4)
+    assert lowest_modes(slack, 1, stage="lie").frequency[0] == pytest.approx(alone, rel=1e-4)
+    assert lowest_modes(slack, 1).frequency[0] == pytest.approx(tensioned_beam(1), rel=1e-4)
 
 
 @pytest.mark.verify
@@ -309,11 +309,11 @@ def test_whole_and_condensed_soil_hold_a_riser_alike() -> None:
     scene = touchdown()
     scene["soil"]["law"] = {"kind": "linear-elastic", "E": 2.0e5, "nu": 0.45}
     ways = ({"soil": way, "tolerance": 1e-9} for way in ("whole", "condensed"))
-    whole, condensed = (found(scene | {"solver": way}, 3) for way in ways)
+    whole, condensed = (lowest_modes(scene | {"solver": way}, 3) for way in ways)
     assert whole.frequency == pytest.approx(condensed.frequency, rel=1e-6)
     assert np.abs(whole.line.shape - condensed.line.shape).max() < 1e-4
     scene["soil"]["law"]["E"] = 2.0e7
-    assert (found(scene, 3).frequency > 1.0001 * condensed.frequency).all()
+    assert (lowest_modes(scene, 3).frequency > 1.0001 * condensed.frequency).all()
 
 
 def tethered(body: Mapping, pipe: Mapping, elements: int) -> Mapping:
@@ -341,7 +341,7 @@ def test_a_buoy_on_a_heavy_tether() -> None:
     """A string, and a bar, with a mass at its end: x tan x = m L / M, x = ω L / c; m of the line, M of the buoy."""
     size = 0.1
     rope = {"EA": 1.0e6, "EI": 1.0, "GJ": 1.0e4, "mass": WATER * np.pi / 4.0 * size**2, "outer_diameter": size}
-    modes = found(tethered(POINT, rope, 40), 5)
+    modes = lowest_modes(tethered(POINT, rope, 40), 5)
     M, T = POINT["mass"] + POINT["added_mass"] * WATER * POINT["volume"], (POINT["volume"] * WATER - POINT["mass"]) * G
     m, strain = rope["mass"], T / rope["EA"]
     x = [brentq(lambda x: x * np.tan(x) - m * LENGTH / M, n * np.pi, (n + 0.5) * np.pi - 1e-9) for n in (0, 1)]
@@ -358,7 +358,7 @@ def test_a_buoy_on_a_heavy_tether() -> None:
 def test_a_rigid_buoy_on_a_light_tether() -> None:
     """A pendulum of two links upside down, about either axis; nothing holds it from turning about the line."""
     rope = {"EA": 1.0e8, "EI": 1.0e-2, "GJ": 1.0e4, "mass": 0.2, "outer_diameter": 0.02}
-    modes = found(tethered(RIGID, rope, 4), 5)
+    modes = lowest_modes(tethered(RIGID, rope, 4), 5)
     m, W, B = RIGID["mass"], RIGID["mass"] * G, RIGID["volume"] * WATER * G
     low, high = 1.0 + RIGID["centre_of_gravity"][2], 1.0 + RIGID["centre_of_buoyancy"][2]
     K, expected = np.diag([(B - W) * LENGTH, B * high - W * low]), [0.0]

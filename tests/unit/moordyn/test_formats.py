@@ -44,9 +44,9 @@ FairTen1
 
 
 def imported(folder: Path, text: str) -> tuple[dict[str, Any], list[str]]:
-    found = scene_of(deck_of_text(folder, text))
-    scene_from_mapping(found.data)
-    return found.data, [f"{line}: {what}" for line, what in found.remarks]
+    scene = scene_of(deck_of_text(folder, text))
+    scene_from_mapping(scene.data)
+    return scene.data, [f"{line}: {what}" for line, what in scene.remarks]
 
 
 def test_a_deck_of_version_1(tmp_path: Path) -> None:

@@ -85,8 +85,8 @@ def test_a_lazy_wave(tmp_path: Path) -> None:
     assert riser["start"]["position"] == (150.0, 0.0, -100.0)
     assert riser["end"]["position"] == (6.0, 0.0, -8.0)
     (joint,) = riser["attachments"]
-    reported = [joint[key] for key in ("at", "mass", "volume", "drag_area", "added_mass")]
-    assert reported == [130.0, 50.0, 0.2, 0.1, 0.5]
+    values = [joint[key] for key in ("at", "mass", "volume", "drag_area", "added_mass")]
+    assert values == [130.0, 50.0, 0.2, 0.1, 0.5]
     assert [cable[key] for key in ("outer_diameter", "mass", "EA", "EI")] == [0.2, 72.0, 6.0e8, 2.0e4]
     assert cable["drag"] == {"normal": 1.2, "tangential": 0.05, "by_reynolds": None}
     assert cable["added_mass"] == {"normal": 1.0, "tangential": 0.1}
@@ -99,13 +99,13 @@ def test_a_lazy_wave(tmp_path: Path) -> None:
 
 
 def test_what_is_not_carried_over_is_reported_by_line(tmp_path: Path) -> None:
-    reported = dict[int, list[str]]()
+    remarks = dict[int, list[str]]()
     for line, text in scene_of(deck(tmp_path)).remarks:
-        reported.setdefault(line, []).append(text)
-    assert sorted(reported) == [6, 7, 11, 15, 25, 26, 34], "outputs and a force of 0 change nothing"
+        remarks.setdefault(line, []).append(text)
+    assert sorted(remarks) == [6, 7, 11, 15, 25, 26, 34], "outputs and a force of 0 change nothing"
     for line, word in {6: "BA", 11: "bodies", 15: "motion", 25: "kBot", 26: "--line 4", 34: "cbot"}.items():
-        assert word in reported[line][0]
-    assert [text.split()[0] for text in reported[7]] == ["Cl", "EA"]
+        assert word in remarks[line][0]
+    assert [text.split()[0] for text in remarks[7]] == ["Cl", "EA"]
 
 
 def test_another_line_of_the_deck(tmp_path: Path) -> None:
@@ -140,7 +140,7 @@ def test_the_deck_of_the_comparison_with_moordyn(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "reported"),
+    ("old", "new", "message"),
     [
         ("3     cable       4        3", "3     cable       4        2", "LINE.dat:25: line 3 is a third at"),
         ("1     cable       1        2", "1     chain       1        2", r"LINE.dat:23: line type chain is not among"),
@@ -153,9 +153,9 @@ def test_the_deck_of_the_comparison_with_moordyn(tmp_path: Path) -> None:
         ("LINES -", "CABLES -", "has no LINES"),
     ],
 )  # fmt: skip
-def test_decks_that_give_no_scene(old: str, new: str, reported: str, tmp_path: Path) -> None:
+def test_decks_that_give_no_scene(old: str, new: str, message: str, tmp_path: Path) -> None:
     assert old in DECK
-    with pytest.raises(SceneError, match=reported):
+    with pytest.raises(SceneError, match=message):
         scene_of(deck(tmp_path, DECK.replace(old, new)))
 
 
@@ -180,15 +180,15 @@ def test_the_command_writes_a_scene_once(tmp_path: Path) -> None:
 )
 def test_friction_along_and_across(rows: str, friction: tuple[float, float], tmp_path: Path) -> None:
     """Of MoorDyn-F two coefficients; of MoorDyn-C one."""
-    found = read(deck(tmp_path, DECK.replace("0.3           FrictionCoefficient", rows)))["contact"]["friction"]
-    assert (found["axial"], found["lateral"]) == friction
+    given = read(deck(tmp_path, DECK.replace("0.3           FrictionCoefficient", rows)))["contact"]["friction"]
+    assert (given["axial"], given["lateral"]) == friction
 
 
 def test_friction_in_one_direction_alone_is_reported(tmp_path: Path) -> None:
     """Of the two coefficients of MoorDyn-F each is 0 where it is not given."""
-    found = scene_of(deck(tmp_path, DECK.replace("0.3           FrictionCoefficient", "0.6 MU_KT")))
-    assert "contact" not in found.data
-    line_with([f"{line}: {text}" for line, text in found.remarks], "38:", "friction", "0 along", "0.6 across")
+    imported = scene_of(deck(tmp_path, DECK.replace("0.3           FrictionCoefficient", "0.6 MU_KT")))
+    assert "contact" not in imported.data
+    line_with([f"{line}: {text}" for line, text in imported.remarks], "38:", "friction", "0 along", "0.6 across")
 
 
 @pytest.mark.parametrize("friction", ["0.3           Fric", "0.3           mu_kA\n0.5 mu_kT\n0.1 Fric"])
@@ -201,8 +201,8 @@ def test_a_scene_comes_back_from_its_deck(line: str, friction: str, tmp_path: Pa
     back = scene_of(read_deck(tmp_path / "back.dat"))
     assert scene_from_mapping(back.data) == scene
     assert back.data == first.data
-    reported = {text.split()[0] for _, text in back.remarks}
-    assert reported == {"BA/-zeta"} | ({"kBot"} if line == "1" else set())  # of two diameters
+    words = {text.split()[0] for _, text in back.remarks}
+    assert words == {"BA/-zeta"} | ({"kBot"} if line == "1" else set())  # of two diameters
 
 
 def test_the_step_of_a_deck_is_short_enough(tmp_path: Path) -> None:
@@ -242,10 +242,10 @@ def test_the_export_tells_what_a_deck_lacks(tmp_path: Path) -> None:
     text.write_text(yaml_text(data))
     done = CliRunner().invoke(app, ["export", str(text), "-o", str(tmp_path / "out.dat")])
     assert done.exit_code == 0, done.output
-    reported = [
+    remarks = [
         line.split("not in the deck: ")[1].split()[0] for line in done.output.splitlines() if "not in the" in line
     ]
-    assert reported == [
+    assert remarks == [
         "water.current.profile", "line_types.cable.GJ", "line_types.cable.damping.ratio",
         "line_types.cable.damping.frequency", "stages.1.kind", "stages.1.duration", "stages.1.time_step",
     ]  # fmt: skip
@@ -254,18 +254,18 @@ def test_the_export_tells_what_a_deck_lacks(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "reported"),
+    ("change", "message"),
     [
         ({"water": {"density": 1000.0}}, "water.surface_level: is missing"),
         ({"seabed": {"kind": "rigid", "level": -101.0}}, "seabed: a deck has no other ground than kind spring"),
     ],
 )
-def test_scenes_that_give_no_deck(change: Mapping, reported: str, tmp_path: Path) -> None:
+def test_scenes_that_give_no_deck(change: Mapping, message: str, tmp_path: Path) -> None:
     data = scene_of(deck(tmp_path), "4").data | change
     (tmp_path / "scene.yaml").write_text(yaml_text(data))
     done = CliRunner().invoke(app, ["export", str(tmp_path / "scene.yaml"), "-o", str(tmp_path / "out.dat")])
     assert done.exit_code == 2
-    assert reported in done.output
+    assert message in done.output
     assert not (tmp_path / "out.dat").exists()
 
 

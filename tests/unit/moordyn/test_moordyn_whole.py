@@ -56,8 +56,8 @@ ID   LineType   AttachA  AttachB  UnstrLen  NumSegs  LineOutputs
 def imported(tmp_path: Path, text: str = DECK) -> tuple[dict[str, Any], list[str]]:
     file = tmp_path / "deck.dat"
     file.write_text(text)
-    found = whole_scene_of(read_deck(file))
-    return found.data, [f"{line}: {what}" for line, what in found.remarks]
+    scene = whole_scene_of(read_deck(file))
+    return scene.data, [f"{line}: {what}" for line, what in scene.remarks]
 
 
 def test_a_whole_deck(tmp_path: Path) -> None:

@@ -23,8 +23,8 @@ VALUES = {"g": 9.7, "rho": 1001.0, "WtrDpth": 76.5, "kBot": 7.0e4, "FrictionCoef
 
 
 def imported(folder: Path, **parts: Any) -> tuple[dict[str, Any], list[str]]:
-    found = scene_of(deck_of_text(folder, text_of_deck(**parts)))
-    return found.data, [f"{line}: {what}" for line, what in found.remarks]
+    scene = scene_of(deck_of_text(folder, text_of_deck(**parts)))
+    return scene.data, [f"{line}: {what}" for line, what in scene.remarks]
 
 
 def in_scene(data: dict[str, Any]) -> dict[str, float]:
@@ -117,8 +117,8 @@ def test_each_section_by_each_of_its_headers(usual: str, words: str, tmp_path: P
     for case in CASES:
         for before, after in (("", ""), ("some ", ", 90 mm of all points"), ("solver ", " and lines")):
             text = text_of_deck().replace(f"------ {usual} ------", f"--- {case(before + words + after)} -----")
-            found = scene_of(deck_of_text(tmp_path, text))
-            assert found.data == want[0], (before, words, after)
+            scene = scene_of(deck_of_text(tmp_path, text))
+            assert scene.data == want[0], (before, words, after)
 
 
 @pytest.mark.parametrize("section", names.SECTIONS)
@@ -191,8 +191,8 @@ def test_each_kind_of_body_by_each_of_its_words(kind: str, tmp_path: Path) -> No
         points = [*POINTS[:3], "2 body1 0 0 0 0 0 0 0", "3 Body1 1 0 0 0 0 0 0"]
         text = text_of_deck(points=points, bodies=bodies)
         data = whole_scene_of(deck_of_text(tmp_path, text)).data
-        held = {"position": [6.0, 0.0, -5.0]}
-        assert data["lines"]["line1"]["end"] == ("free" if kind == "free" else held), word
+        place = {"position": [6.0, 0.0, -5.0]}
+        assert data["lines"]["line1"]["end"] == ("free" if kind == "free" else place), word
         assert ("body1" in data.get("bodies", {})) == (kind == "free")
 
 
@@ -204,9 +204,9 @@ def test_each_kind_of_rod_by_each_of_its_words(kind: str, tmp_path: Path) -> Non
         at = f"{word}1" if kind == "body" else word
         data, _ = imported(tmp_path, lines=lines, bodies=[*BODY[:2], BODY[2].format("Coupled")],
                            rod_types=ROD_TYPES, rods=[*RODS[:2], RODS[2].format(case(at))])  # fmt: skip
-        held = {"position": [6.0, 0.0, -5.0] if kind == "body" else [0.0, 0.0, 0.0]}
+        place = {"position": [6.0, 0.0, -5.0] if kind == "body" else [0.0, 0.0, 0.0]}
         free = "start" if data["riser"]["start"] == "free" else "end"
-        assert data["riser"][free] == ("free" if kind == "free" else held), word
+        assert data["riser"][free] == ("free" if kind == "free" else place), word
 
 
 def test_kinds_that_are_none(tmp_path: Path) -> None:

@@ -24,9 +24,9 @@ LOADS = ["ID Object Fext Blin Bquad CSys", "(-)"]
 
 
 def imported(folder: Path, whole: bool = False, **parts: Any) -> tuple[dict[str, Any], list[str]]:
-    found = (whole_scene_of if whole else scene_of)(deck_of_text(folder, text_of_deck(**parts)))
-    scene_from_mapping(found.data)
-    return found.data, [f"{line}: {what}" for line, what in found.remarks]
+    scene = (whole_scene_of if whole else scene_of)(deck_of_text(folder, text_of_deck(**parts)))
+    scene_from_mapping(scene.data)
+    return scene.data, [f"{line}: {what}" for line, what in scene.remarks]
 
 
 @pytest.mark.parametrize("mass", [0.0, 350.0])
@@ -150,8 +150,8 @@ def test_points_on_a_turned_body(angles: str, arm: tuple[float, float, float], t
     bodies = [*BODIES, f"1 Coupled 6 0 -5 {angles} 0 0 0 0 0 0"]
     points = [*POINTS[:3], "2 Body1 2 0 1 0 0 0 0"]
     lines = [*LINES[:2], "1 rope 1 2 262 24 -"]
-    found = imported(tmp_path, points=points, bodies=bodies, lines=lines)[0]["riser"]["end"]["position"]
-    assert found == pytest.approx([6 + arm[0], arm[1], -5 + arm[2]])
+    position = imported(tmp_path, points=points, bodies=bodies, lines=lines)[0]["riser"]["end"]["position"]
+    assert position == pytest.approx([6 + arm[0], arm[1], -5 + arm[2]])
     with pytest.raises(SceneError, match=r"body 1 is turned about 2 axes"):
         imported(tmp_path, points=points, bodies=[*BODIES, "1 Coupled 6 0 -5 5 5 0 0 0 0 0 0 0"], lines=lines)
 

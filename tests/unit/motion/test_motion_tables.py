@@ -75,8 +75,8 @@ def test_end_goes_through_the_rows_from_where_it_is(tmp_path: Path) -> None:
 )
 def test_units_order_and_separators_are_free(text: str, tmp_path: Path) -> None:
     expected = at(scene(tmp_path, HEADER + STILL + ROWS), 1.4)
-    for found, value in zip(at(scene(tmp_path, text), 1.4), expected, strict=True):
-        assert found == pytest.approx(value, rel=1e-8, abs=1e-8)
+    for computed, value in zip(at(scene(tmp_path, text), 1.4), expected, strict=True):
+        assert computed == pytest.approx(value, rel=1e-8, abs=1e-8)
 
 
 def test_rotations_turn_the_support(tmp_path: Path) -> None:

@@ -31,13 +31,13 @@ def following(omega: Array = OMEGA) -> Array:
     Capytaine's potential is -i g/w exp(kz + ik(x cos b + y sin b)), all amplitudes Re(X exp(-iwt)). So velocity is its
     gradient, displacement that over -iw, and the surface exp(ik(...)) has the slope ik(cos b, sin b).
     """
-    k, found = omega**2 / G, np.zeros((BETA.size, omega.size, 6), dtype=complex)
+    k, response = omega**2 / G, np.zeros((BETA.size, omega.size, 6), dtype=complex)
     for n, beta in enumerate(BETA):
         gradient = -1j * G / omega * k * np.array([1j * np.cos(beta) + 0 * k, 1j * np.sin(beta) + 0 * k, 1.0 + 0 * k])
-        found[n, :, :3] = (gradient / (-1j * omega)).T
+        response[n, :, :3] = (gradient / (-1j * omega)).T
         slope = 1j * k
-        found[n, :, 3], found[n, :, 4] = slope * np.sin(beta), -slope * np.cos(beta)
-    return found
+        response[n, :, 3], response[n, :, 4] = slope * np.sin(beta), -slope * np.cos(beta)
+    return response
 
 
 def variables(values: Array, omega: Array = OMEGA) -> Variables:
@@ -50,8 +50,8 @@ def variables(values: Array, omega: Array = OMEGA) -> Variables:
     }  # fmt: skip
 
 
-def written(folder: Path, found: Any) -> Rao:
-    write_netcdf(folder / "rao.nc", found)
+def written(folder: Path, dataset: Any) -> Rao:
+    write_netcdf(folder / "rao.nc", dataset)
     return read_capytaine(folder / "rao.nc")
 
 
@@ -159,7 +159,7 @@ def test_a_body_that_turns_about_another_place_than_its_phases_count_from_is_ref
 
 
 @pytest.mark.parametrize(
-    ("other", "reported"),
+    ("other", "message"),
     [
         ({"RAO": None}, "has no variable RAO"),
         ({"radiating_dof": (("radiating_dof",), np.array([*DOFS[:5], "Bending"]))}, "Bending is no motion of a rigid"),
@@ -171,9 +171,9 @@ def test_a_body_that_turns_about_another_place_than_its_phases_count_from_is_ref
         ({"complex": None, "RAO": (("omega", "wave_direction", "radiating_dof"), np.ones((4, 8, 6)))}, "RAO is real"),
     ],
 )
-def test_files_without_raos(other: dict[str, Any], reported: str, tmp_path: Path) -> None:
+def test_files_without_raos(other: dict[str, Any], message: str, tmp_path: Path) -> None:
     write_netcdf(tmp_path / "rao.nc", changed(**other))
     stage = dynamic(20.0, 0.2, "sail", motion={"end": {"vessel": {"rao": "rao.nc", "reference": VESSEL_END}}})
-    with pytest.raises(SceneError, match=reported) as error:
+    with pytest.raises(SceneError, match=message) as error:
         scene_from_mapping(below_vessel(stage, waves=AIRY), tmp_path)
     assert "\n" not in str(error.value)

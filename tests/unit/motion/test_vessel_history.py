@@ -135,12 +135,12 @@ def test_small_motions_are_those_by_raos(tmp_path: Path) -> None:
 
 
 def test_echo_and_dimension(tmp_path: Path) -> None:
-    found = scene(tmp_path, text(six(T)))
+    given = scene(tmp_path, text(six(T)))
     folder = tmp_path / "results"
     folder.mkdir()
-    (folder / "scene.yaml").write_text(dump_scene(found), encoding="utf-8")
-    assert read_scene(folder / "scene.yaml") == found
-    assert resolved_dimension(found) == 3
+    (folder / "scene.yaml").write_text(dump_scene(given), encoding="utf-8")
+    assert read_scene(folder / "scene.yaml") == given
+    assert resolved_dimension(given) == 3
     in_plane = scene(tmp_path, text(six(T)[:, [0, 2, 4]], header="t [s], surge [m], heave [m], pitch [deg]\n"))
     assert resolved_dimension(in_plane) == 2
     assert resolved_dimension(scene(tmp_path, text(six(T)[:, :1], header="t [s], sway [m]\n"))) == 3

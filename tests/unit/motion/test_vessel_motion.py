@@ -55,13 +55,13 @@ def turned(assembly: Assembly, t: float) -> SupportRotation:
     return assembly.riser.line.end.turning(t)
 
 
-@pytest.mark.parametrize(("surge", "reported"), [(6.0, 0), (14.0, 1)])
-def test_a_vessel_that_drives_too_far_is_reported(surge: float, reported: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("surge", "count"), [(6.0, 0), (14.0, 1)])
+def test_a_vessel_that_drives_too_far_is_reported(surge: float, count: int, tmp_path: Path) -> None:
     """The ends are 40 m and 33 m apart at rest, the waves 1.5 m high: a surge of 6.7 m/m uses up the 60 m."""
     text = table(*EVERYWHERE, surge=(surge, 0.0))
     assembly = begun(scene(tmp_path, text, aboard(duration=40.0)))
     warnings = [warning for warning in physical_warnings(assembly) if "m apart" in warning]
-    assert len(warnings) == reported
+    assert len(warnings) == count
     for warning in warnings:
         assert warning.startswith("stages.0.motion: ")
         farthest = float(np.hypot(40.0 + 1.5 * surge, 33.0))
@@ -117,10 +117,10 @@ def test_response_to_a_sea_is_the_rao_times_its_components(tmp_path: Path) -> No
     assert vessels is not None
     assert waves is not None
     response = vessels.motion(floating.stages[0], "end", np.array(VESSEL_END)).response
-    found = np.abs(response.amplitude[:, 0]) ** 2
-    assert found == pytest.approx((2.0 / (1.0 + waves.frequency**2)) ** 2 * waves.amplitude**2, rel=2e-3)
+    energy = np.abs(response.amplitude[:, 0]) ** 2
+    assert energy == pytest.approx((2.0 / (1.0 + waves.frequency**2)) ** 2 * waves.amplitude**2, rel=2e-3)
     lag = waves.wave_number * -REFERENCE[0] + waves.phase + np.radians(40.0 * waves.frequency)
-    assert np.exp(-1j * lag) == pytest.approx(response.amplitude[:, 0] / np.sqrt(found), abs=1e-3)
+    assert np.exp(-1j * lag) == pytest.approx(response.amplitude[:, 0] / np.sqrt(energy), abs=1e-3)
     assert not np.any(response.amplitude[:, 1:])
 
 
@@ -158,17 +158,17 @@ def test_a_vessel_sails_on_through_stages(tmp_path: Path) -> None:
 
 def ends(floating: Scene) -> tuple[Assembly, list[tuple[Array, Array]]]:
     """Where each stage's motion puts the end as it begins and as it ends."""
-    assembly, found = build(floating, MPI.COMM_SELF), []
+    assembly, positions = build(floating, MPI.COMM_SELF), []
     line, state = assembly.riser.line, State.at_rest(0.0, assembly.riser.line.size)
     for stage in floating.stages:
         assembly.begin(stage)
         times = (0.0, 1.0 if stage.kind == "static" else stage.duration)
         motion, here = line.end.motion, line.to_global(line.x[-1])
-        found.append((motion(times[0])[0], motion(times[1])[0]) if motion else (here, here))
+        positions.append((motion(times[0])[0], motion(times[1])[0]) if motion else (here, here))
         line.prescribe(times[1], state.u, state.v, state.a)
         line.commit(state)
         state = State.at_rest(0.0, line.size)
-    return assembly, found
+    return assembly, positions
 
 
 BREAKS: dict[str, tuple[Mapping, dict[str, Any]]] = {
@@ -185,12 +185,12 @@ def test_after_a_break_it_swings_about_the_same_mean(name: str, tmp_path: Path) 
     modes = {mode: (0.3 if n < 3 else 0.02, 50.0 * n) for n, mode in enumerate(MODES)}
     between, change = BREAKS[name]
     stages = static(), aboard(12.6), between, aboard(30.0, "again", **change, ramp=2.0)
-    assembly, found = ends(scene(tmp_path, table(*EVERYWHERE, **modes), *stages))
+    assembly, positions = ends(scene(tmp_path, table(*EVERYWHERE, **modes), *stages))
     motion, turning = assembly.riser.line.end.motion, assembly.riser.line.end.turning
     assert motion is not None
     assert turning is not None
-    assert np.abs(found[2][1] - VESSEL_END).max() > 0.1
-    assert motion(0.0)[0] == pytest.approx(found[2][1], abs=1e-12)
+    assert np.abs(positions[2][1] - VESSEL_END).max() > 0.1
+    assert motion(0.0)[0] == pytest.approx(positions[2][1], abs=1e-12)
     for values in (*motion(0.0)[1:], *turning(0.0)):
         assert values == pytest.approx(np.zeros(3), abs=1e-12)
     period = map(float, np.arange(9.0, 18.0, 0.25))
@@ -206,18 +206,18 @@ def test_a_return_goes_on_in_the_next_stage(tmp_path: Path) -> None:
     text = table(*EVERYWHERE, surge=(1.0, 0.0), pitch=(0.02, 30.0))
     first = static(), aboard(12.6), static("rest")
     long, _ = ends(scene(tmp_path, text, *first, aboard(20.0, "again")))
-    short, found = ends(scene(tmp_path, text, *first, aboard(4.0, "again"), aboard(16.0, "and on")))
-    assert found[3][1] == pytest.approx(found[4][0], abs=1e-12)
+    short, positions = ends(scene(tmp_path, text, *first, aboard(4.0, "again"), aboard(16.0, "and on")))
+    assert positions[3][1] == pytest.approx(positions[4][0], abs=1e-12)
     for t in (4.0, 6.0, 8.0, 19.0):
         assert displaced(short, t - 4.0) == pytest.approx(displaced(long, t), abs=1e-12)
 
 
 def test_a_move_in_a_static_stage_takes_the_berth_along(tmp_path: Path) -> None:
     text, by = table(*EVERYWHERE, surge=(1.0, 0.0)), np.array([-2.0, 0.5, 1.0])
-    _, found = ends(scene(tmp_path, text, static(), aboard(12.6), static("rest"), aboard(30.0, "again")))
-    target = [float(value) for value in found[1][1] + by]
+    _, positions = ends(scene(tmp_path, text, static(), aboard(12.6), static("rest"), aboard(30.0, "again")))
+    target = [float(value) for value in positions[1][1] + by]
     moved = static(), aboard(12.6), static("rest", move={"end": target}), aboard(30.0, "again")
-    assembly, found = ends(scene(tmp_path, text, *moved))
+    assembly, positions = ends(scene(tmp_path, text, *moved))
     assert displaced(assembly, 0.0) == pytest.approx(np.array(target) - VESSEL_END, abs=1e-12)
     mean = np.mean([displaced(assembly, t) for t in map(float, np.arange(9.0, 18.0, 0.25))], axis=0)
     assert mean == pytest.approx(by, abs=1e-9)
@@ -262,10 +262,10 @@ def test_waves_beyond_the_table(decay: float, warnings: int, tmp_path: Path) -> 
     assert np.count_nonzero(above) == 5  # of 40 waves of equal energy
     assert not np.any(response.amplitude[above])
     assert np.all(response.amplitude[~above, 2])
-    reported = [warning for warning in physical_warnings(assembly) if "vessel" in warning]
-    assert len(reported) == warnings
+    messages = [warning for warning in physical_warnings(assembly) if "vessel" in warning]
+    assert len(messages) == warnings
     path, energy = "stages.0.motion.end.vessel.rao:", "waves' energy"
-    assert lines_with(reported, path, "0 %", energy, "12.5 % above", "1.1 rad/s") == reported
+    assert lines_with(messages, path, "0 %", energy, "12.5 % above", "1.1 rad/s") == messages
 
 
 def test_a_table_that_misses_waves_that_matter_is_refused(tmp_path: Path) -> None:

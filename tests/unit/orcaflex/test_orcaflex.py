@@ -71,10 +71,10 @@ def test_numbers_in_si_units(tmp_path: Path) -> None:
 
 def test_what_is_not_carried_over_is_reported_by_line(tmp_path: Path) -> None:
     text = data_text()
-    reported = dict(imported(tmp_path, text).remarks)
-    words = {line: text.splitlines()[line - 1].split()[0] for line in reported}
+    remarks = dict(imported(tmp_path, text).remarks)
+    words = {line: text.splitlines()[line - 1].split()[0] for line in remarks}
     assert [*words.values()] == ["WindSpeed:", "RAOs:", "LayAzimuth:", "-"]
-    line_with([reported[max(reported)]], "Lines Other:", "one riser", "--line 'Other'", "--line all")
+    line_with([remarks[max(remarks)]], "Lines Other:", "one riser", "--line 'Other'", "--line all")
 
 
 def test_a_value_that_nothing_knows_is_reported(tmp_path: Path) -> None:
@@ -84,10 +84,10 @@ def test_a_value_that_nothing_knows_is_reported(tmp_path: Path) -> None:
         ("ConnectionGamma\n", "ConnectionGamma, ConnectionPayoutRate\n"), ("0, 170, 0]", "0, 170, 0, 0.5]"),
         ("Groups:", "Winches:\n  - Name: Pull\n    Length: 3\nGroups:"),
     )  # fmt: skip
-    reported = [text for _, text in imported(tmp_path, text).remarks]
-    line_with(reported, 'LineTypes 8" hose: Novel 3:', "not known here")
-    line_with(reported, "Lines Riser: ConnectionPayoutRate 0.5:", "paid out")
-    line_with(reported, "Winches Pull:", "the pull of a winch")
+    texts = [text for _, text in imported(tmp_path, text).remarks]
+    line_with(texts, 'LineTypes 8" hose: Novel 3:', "not known here")
+    line_with(texts, "Lines Riser: ConnectionPayoutRate 0.5:", "paid out")
+    line_with(texts, "Winches Pull:", "the pull of a winch")
 
 
 def test_the_tension_at_rest_is_the_catenarys(tmp_path: Path) -> None:
@@ -162,7 +162,7 @@ def test_raos_in_signs_units_and_the_other_half_circle(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "reported"),
+    ("old", "new", "message"),
     [
         ("Symmetry: xz plane", "Symmetry: Circular", "Symmetry Circular"),
         ("PhaseOrigin: [~, ~, ~]", "PhaseOrigin: [0, 0, 0]", "PhaseOrigin"),
@@ -180,15 +180,15 @@ def test_raos_in_signs_units_and_the_other_half_circle(tmp_path: Path) -> None:
         ("VariationMethod: Interpolated", "VariationMethod: Power law", "current by Power law"),
     ],
 )  # fmt: skip
-def test_what_a_scene_cannot_have_is_reported(old: str, new: str, reported: str, tmp_path: Path) -> None:
+def test_what_a_scene_cannot_have_is_reported(old: str, new: str, message: str, tmp_path: Path) -> None:
     text = changed((old, new))
     pairs = zip(text.splitlines(), data_text().splitlines(), strict=True)
     line = next(n for n, (a, b) in enumerate(pairs, 1) if a != b)
-    found = imported(tmp_path, text)
-    assert any(reported in text and n == line for n, text in found.remarks)
-    for name, content in found.files.items():
+    result = imported(tmp_path, text)
+    assert any(message in text and n == line for n, text in result.remarks)
+    for name, content in result.files.items():
         (tmp_path / name).write_text(content)
-    scene_from_mapping(found.data, tmp_path)
+    scene_from_mapping(result.data, tmp_path)
 
 
 def test_a_flex_joint(tmp_path: Path) -> None:
@@ -203,10 +203,10 @@ def test_a_flex_joint(tmp_path: Path) -> None:
 def test_a_wave_from_an_origin_in_space_and_time(tmp_path: Path) -> None:
     """The surface as OrcaFlex has it, whose time is 0 after the build-up of 8 s."""
     text = changed(("WaveOrigin: [0, 0]", "WaveOrigin: [12, 5]"), ("WaveDirection: 180", "WaveDirection: 150"))
-    found = imported(tmp_path, text)
-    for name, content in found.files.items():
+    result = imported(tmp_path, text)
+    for name, content in result.files.items():
         (tmp_path / name).write_text(content)
-    waves = components_of(scene_from_mapping(found.data, tmp_path))
+    waves = components_of(scene_from_mapping(result.data, tmp_path))
     assert waves is not None
     toward, w, t = math.radians(150.0), 2.0 * math.pi / 8.0, 3.7
     k = float(wave_number(np.array([w]), G, 100.0)[0])
@@ -239,7 +239,7 @@ def test_a_homogeneous_pipe(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "reported"),
+    ("old", "new", "message"),
     [
         ("UnitsSystem: SI", "UnitsSystem: US", r"riser.yml:5: General: UnitsSystem: is US; save it in SI units"),
         ("Lines:", "BaseFile: other.yml\nLines:", r"riser.yml:\d+: BaseFile: takes from another file"),
@@ -265,11 +265,11 @@ def test_a_homogeneous_pipe(tmp_path: Path) -> None:
         ("- Name: Ship", "- Name: [Ship", r"riser.yml:\d+: not valid YAML"),
     ],
 )  # fmt: skip
-def test_a_file_that_gives_no_scene_has_one_line(old: str, new: str, reported: str, tmp_path: Path) -> None:
-    with pytest.raises(SceneError, match=reported) as found:
+def test_a_file_that_gives_no_scene_has_one_line(old: str, new: str, message: str, tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match=message) as error:
         imported(tmp_path, changed((old, new)))
-    *said, last = str(found.value).splitlines()
-    assert re.search(reported, last)
+    *said, last = str(error.value).splitlines()
+    assert re.search(message, last)
     assert not said or re.search("none is written; .*: 1$", said[-1])
     assert all("not carried over" in line for line in said[:-1])
 

@@ -37,11 +37,11 @@ def changed(*pairs: tuple[str, str]) -> str:
 def imported(folder: Path, text: str | bytes, line: str | None = None) -> ImportedScene:
     """The scene, which its reader must take as it is."""
     (folder / "riser.yml").write_bytes(text if isinstance(text, bytes) else text.encode())
-    found = scene_of(read_data(folder / "riser.yml"), line)
-    for name, content in found.files.items():
+    scene = scene_of(read_data(folder / "riser.yml"), line)
+    for name, content in scene.files.items():
         (folder / name).write_text(content)
-    scene_from_mapping(found.data, folder)
-    return found
+    scene_from_mapping(scene.data, folder)
+    return scene
 
 
 def data_of(folder: Path, *pairs: tuple[str, str]) -> dict[str, Any]:
@@ -69,9 +69,9 @@ def test_quotes_case_and_marks_change_nothing(tmp_path: Path) -> None:
     spelt = spelt.replace("VesselType: Barge", "VesselType: BARGE").replace("VesselTypes:", "\ufeffVesselTypes:")
     expected = imported(tmp_path, plain)
     for text in (spelt.encode(), spelt.encode("utf-8-sig"), spelt.encode("utf-16")):
-        found = imported(tmp_path, text)
-        assert (found.data, found.files) == (expected.data, expected.files)
-        assert len(found.remarks) == len(expected.remarks)
+        result = imported(tmp_path, text)
+        assert (result.data, result.files) == (expected.data, expected.files)
+        assert len(result.remarks) == len(expected.remarks)
 
 
 def test_all_that_stands_against_a_scene_is_told_at_once(tmp_path: Path) -> None:
@@ -80,9 +80,9 @@ def test_all_that_stands_against_a_scene_is_told_at_once(tmp_path: Path) -> None
         ("ContentsMethod: Uniform", "ContentsMethod: Free flooding"), ("[Anchored, 80", "[Buoy, 80"),
         ("MassPerUnitLength: 0.12", "MassPerUnitLength: heavy"), ("WaveHeight: 2", "WaveHeight: high"),
     )  # fmt: skip
-    with pytest.raises(SceneError) as found:
+    with pytest.raises(SceneError) as error:
         imported(tmp_path, text)
-    lines = str(found.value).splitlines()
+    lines = str(error.value).splitlines()
     refused = lines[lines.index(line_with(lines, "none is written;", "7")) + 1 :]
     for key in ("UnitsSystem", "SeabedSlope", "EI", "ContentsMethod", "Connection", "MassPerUnitLength", "WaveHeight"):
         (n,) = [int(line.split(":")[1]) for line in lines_with(refused, f"{key}:")]
@@ -96,9 +96,9 @@ def test_all_that_stands_against_a_scene_is_told_at_once(tmp_path: Path) -> None
 def test_a_bed_of_springs_by_its_names(model: str, tmp_path: Path) -> None:
     """What only the other model takes is nothing to report."""
     bed = f"SeabedModel: {model}\n  SoilDensity: 1.6"
-    found = imported(tmp_path, changed(("SeabedModel: Elastic", bed)))
-    assert found.data["seabed"]["kind"] == "spring"
-    assert not lines_with([text for _, text in found.remarks], "SoilDensity")
+    result = imported(tmp_path, changed(("SeabedModel: Elastic", bed)))
+    assert result.data["seabed"]["kind"] == "spring"
+    assert not lines_with([text for _, text in result.remarks], "SoilDensity")
 
 
 @pytest.mark.parametrize(
@@ -116,8 +116,8 @@ def test_a_taper_of_steel_keeps_its_mass(tmp_path: Path) -> None:
         ("OD: 0.30", "OD: joint"), ('[8" hose, 110, 2]', '[8" hose, 30, 3]'), ('      - [8" hose, 40, 4]\n', ""),
         ("[Anchored, 80, 0, 0.15", "[Fixed, 20, 0, -20"),
     )  # fmt: skip
-    found = imported(tmp_path, text)
-    segments, types = found.data["riser"]["segments"], found.data["line_types"]
+    result = imported(tmp_path, text)
+    segments, types = result.data["riser"]["segments"], result.data["line_types"]
     assert sum(each["length"] for each in segments) == pytest.approx(30.0)
     mass = sum(each["length"] * types[each["line_type"]]["mass"] for each in segments)
     squares = 10.0 / 6.0 * (0.34**2 + 4.0 * 0.32**2 + 0.30**2) + 20.0 * 0.30**2 - 30.0 * 0.20**2
@@ -125,7 +125,7 @@ def test_a_taper_of_steel_keeps_its_mass(tmp_path: Path) -> None:
     stiffness = [types[each["line_type"]]["EI"] for each in segments]  # from the lower end, which is end B
     assert stiffness == sorted(stiffness)
     assert all(b < 1.101 * a for a, b in pairwise(stiffness))
-    said = line_with([text for _, text in found.remarks], "OD", "table", "pieces", "EI")
+    said = line_with([text for _, text in result.remarks], "OD", "table", "pieces", "EI")
     worst = float(said.split("most, ")[1].split(" %")[0])
     D = np.linspace(0.30, 0.34, 2001)
     exact, pieces = D**4 - 0.20**4, np.array(sorted({types[each["line_type"]]["outer_diameter"] for each in segments}))
@@ -135,12 +135,12 @@ def test_a_taper_of_steel_keeps_its_mass(tmp_path: Path) -> None:
 
 def test_an_outer_diameter_by_a_table_for_any_line_type(tmp_path: Path) -> None:
     table = with_table("LineTypeOuterDiameter", "Cone", "[[0, 0.36], [4, 0.30]]")
-    found = imported(tmp_path, changed(table, ("OD: 0.30", "OD: Cone")))
-    upper = found.data["riser"]["segments"][-1]
-    hose = found.data["line_types"][upper["line_type"]]
+    result = imported(tmp_path, changed(table, ("OD: 0.30", "OD: Cone")))
+    upper = result.data["riser"]["segments"][-1]
+    hose = result.data["line_types"][upper["line_type"]]
     assert hose["outer_diameter"] == pytest.approx(0.36, rel=0.03)
     assert (hose["EI"], hose["mass"]) == (5.0e4, 120.0)
-    assert sum(each["length"] for each in found.data["riser"]["segments"]) == pytest.approx(150.0)
+    assert sum(each["length"] for each in result.data["riser"]["segments"]) == pytest.approx(150.0)
 
 
 def test_drag_by_reynolds_number(tmp_path: Path) -> None:
@@ -169,10 +169,10 @@ def test_drag_and_added_mass_by_single_names(across: str, along: str, tmp_path: 
 )
 def test_a_line_that_does_not_twist(given: str, EI: str, GJ: float, tmp_path: Path) -> None:
     """As stiff as it bends, or 1e-4 EA D^2 of a chain, and said so."""
-    found = imported(tmp_path, changed(("GJ: 12", given), ("EI: [50, ~]", f"EI: {EI}")))
-    (hose,) = the_types(found.data)
+    result = imported(tmp_path, changed(("GJ: 12", given), ("EI: [50, ~]", f"EI: {EI}")))
+    (hose,) = the_types(result.data)
     assert hose["GJ"] == pytest.approx(GJ)
-    line_with([text for _, text in found.remarks], "GJ", "does not twist", f"{GJ:g} N.m2")
+    line_with([text for _, text in result.remarks], "GJ", "does not twist", f"{GJ:g} N.m2")
 
 
 def test_torsion_that_is_left_out_has_no_effect(tmp_path: Path) -> None:
@@ -245,21 +245,21 @@ CLAY = """Nonlinear soil model
     ],
 )
 def test_clay_by_randolph_and_quiggin(parameters: str, tmp_path: Path) -> None:
-    found = imported(tmp_path, changed(("SeabedModel: Elastic\n", f"SeabedModel: {CLAY}{parameters}")))
-    assert found.data["seabed"] == {
+    result = imported(tmp_path, changed(("SeabedModel: Elastic\n", f"SeabedModel: {CLAY}{parameters}")))
+    assert result.data["seabed"] == {
         "kind": "hysteretic", "level": -100.0, "contact_at": "outer",
         "law": {
             "kind": "randolph-quiggin", "su": 3500.0, "su_gradient": 1200.0, "a": 5.5, "b": 0.3, "K_max": 180.0,
             "unit_weight": pytest.approx(525.0 * G), "f_suc": 0.5, "lambda_suc": 0.8, "lambda_rep": 0.4, "f_b": 1.4,
         },
     }  # fmt: skip
-    assert not lines_with([text for _, text in found.remarks], "oil")
+    assert not lines_with([text for _, text in result.remarks], "oil")
 
 
 def test_clay_by_defaults_says_so_and_needs_its_strength(tmp_path: Path) -> None:
-    found = imported(tmp_path, changed(("SeabedModel: Elastic\n", f"SeabedModel: {CLAY.lower()}  SoilNovel: 3\n")))
-    assert "K_max" not in found.data["seabed"]["law"]
-    remarks = [text for _, text in found.remarks]
+    result = imported(tmp_path, changed(("SeabedModel: Elastic\n", f"SeabedModel: {CLAY.lower()}  SoilNovel: 3\n")))
+    assert "K_max" not in result.data["seabed"]["law"]
+    remarks = [text for _, text in result.remarks]
     line_with(remarks, "law's default here", "a 6", "K_max 200", "f_b 1.5")
     line_with(remarks, "SoilNovel 3:", "not known here")
     with pytest.raises(SceneError, match="SoilShearStrengthAtMudline: is missing"):
@@ -284,28 +284,28 @@ HUNG = """AttachmentType, Attachmentx, Attachmenty, Attachmentz, AttachmentzRela
 
 def test_clumps(tmp_path: Path) -> None:
     """At 30 and 50 m from end A, which is the upper one of 150 m."""
-    found = imported(tmp_path, changed(("Environment:\n", CLUMPS), ("ContentsMethod: Uniform", HUNG)))
-    (float_,) = found.data["riser"]["attachments"]
+    result = imported(tmp_path, changed(("Environment:\n", CLUMPS), ("ContentsMethod: Uniform", HUNG)))
+    (float_,) = result.data["riser"]["attachments"]
     assert float_ == {"at": [100.0, 120.0], "mass": 400.0, "volume": 0.9, "drag_area": 1.6, "added_mass": 0.5}
-    remarks = [text for _, text in found.remarks]
+    remarks = [text for _, text in result.remarks]
     line_with(remarks, "ClumpTypes Float:", "1.6, 1.6, 2.7")
     line_with(remarks, "attachment Chain:", "only clumps")
 
 
 def test_a_joint_by_a_table(tmp_path: Path) -> None:
     table = with_table("Bendingconnectionstiffness", "Flex", "[[0, 0], [0.5, 4], [10, 30]]")
-    found = imported(tmp_path, changed(table, ("- [2, ~]", "- [Flex, ~]")))
-    assert found.data["riser"]["end"]["rotation"]["stiffness"] == pytest.approx(math.degrees(8.0e3))
-    line_with([text for _, text in found.remarks], "table Flex", "8 kN.m/deg", "10 deg", "30 kN.m")
+    result = imported(tmp_path, changed(table, ("- [2, ~]", "- [Flex, ~]")))
+    assert result.data["riser"]["end"]["rotation"]["stiffness"] == pytest.approx(math.degrees(8.0e3))
+    line_with([text for _, text in result.remarks], "table Flex", "8 kN.m/deg", "10 deg", "30 kN.m")
 
 
 def test_a_clamped_end_keeps_its_direction(tmp_path: Path) -> None:
     """End A's axis points 170 deg down from z: upwards the line leans by 10 deg, so that it is 80 deg steep."""
     clamp = ("- [2, ~]", "- [Infinity, ~]")
-    found = imported(tmp_path, changed(clamp, ("StageDuration: [8, 16]\n", "LogEnd: 1\n"), ("Speed: 0.4", "Speed: 0")))
-    joint = found.data["riser"]["end"]["rotation"]
+    result = imported(tmp_path, changed(clamp, ("StageDuration: [8, 16]\n", "LogEnd: 1\n"), ("Speed: 0.4", "Speed: 0")))
+    joint = result.data["riser"]["end"]["rotation"]
     assert joint == {"stiffness": pytest.approx(1e4 * 5.0e4 / 2.0), "neutral_angle": pytest.approx(10.0)}
-    done = run(Scene.from_dict(found.data), tmp_path / "out", quiet=True)
+    done = run(Scene.from_dict(result.data), tmp_path / "out", quiet=True)
     assert done.summary["stages"][-1]["final"]["end"]["angle_deg"] == pytest.approx(80.0, abs=0.02)
     chain = imported(tmp_path, changed(clamp, ("EI: [50, ~]", "EI: [0, ~]")))
     assert "rotation" not in chain.data["riser"]["end"]
@@ -324,13 +324,13 @@ OTHER = """- Name: Other
 
 def test_all_lines(tmp_path: Path) -> None:
     text = changed(("- Name: Other\n    TopEnd: End A\n", OTHER))
-    found = imported(tmp_path, text, "all")
-    assert list(found.data["lines"]) == ["Riser", "Other"]
-    assert found.data["lines"]["Other"]["segments"] == [{"line_type": '8" hose', "length": 150.0, "elements": 30}]
-    moved = found.data["stages"][1]["lines"]
+    result = imported(tmp_path, text, "all")
+    assert list(result.data["lines"]) == ["Riser", "Other"]
+    assert result.data["lines"]["Other"]["segments"] == [{"line_type": '8" hose', "length": 150.0, "elements": 30}]
+    moved = result.data["stages"][1]["lines"]
     assert list(moved) == ["Riser"]
-    assert moved["Riser"]["motion"]["end"]["vessel"]["rao"] in found.files
-    assert not lines_with([text for _, text in found.remarks], "one riser")
+    assert moved["Riser"]["motion"]["end"]["vessel"]["rao"] in result.files
+    assert not lines_with([text for _, text in result.remarks], "one riser")
     alone = imported(tmp_path, text, "other").data
     assert alone["riser"]["end"]["position"] == [10.0, 30.0, -2.0]
 
@@ -338,9 +338,9 @@ def test_all_lines(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("z", "depth"), [("0", "0.15 m"), ("-2.5", "2.65 m")])
 def test_an_end_in_the_seabed_is_laid_from_it(z: str, depth: str, tmp_path: Path) -> None:
     """The pipe's axis rests half its diameter of 0.3 m above the bed at -100 m."""
-    found = imported(tmp_path, changed(("[Anchored, 80, 0, 0.15", f"[Anchored, 80, 0, {z}")))
-    assert found.data["riser"]["start"]["position"] == [80.0, 0.0, -99.85]
-    line_with([text for _, text in found.remarks], "Lines Riser:", depth, "z = -99.85 m")
+    result = imported(tmp_path, changed(("[Anchored, 80, 0, 0.15", f"[Anchored, 80, 0, {z}")))
+    assert result.data["riser"]["start"]["position"] == [80.0, 0.0, -99.85]
+    line_with([text for _, text in result.remarks], "Lines Riser:", depth, "z = -99.85 m")
     resting = imported(tmp_path, data_text())
     assert not lines_with([text for _, text in resting.remarks], "laid from")
 
@@ -348,7 +348,7 @@ def test_an_end_in_the_seabed_is_laid_from_it(z: str, depth: str, tmp_path: Path
 def test_values_have_the_lines_they_come_from(tmp_path: Path) -> None:
     """So that what a check finds wrong with the scene is said of the file."""
     text = changed(('[8" hose, 110, 2]', '[8" hose, 110, 20]'))
-    found = imported(tmp_path, text)
+    result = imported(tmp_path, text)
     lines = text.splitlines()
     expected = {
         ("riser",): "- Name: Riser", ("riser", "segments", 1): "110, 20", ("riser", "start"): "Anchored",
@@ -356,7 +356,7 @@ def test_values_have_the_lines_they_come_from(tmp_path: Path) -> None:
         ("seabed",): "SeabedModel", ("stages",): "StageDuration",
     }  # fmt: skip
     for path, words in expected.items():
-        assert words in lines[found.origins[path] - 1]
+        assert words in lines[result.origins[path] - 1]
 
 
 def test_binary_data_are_refused_by_their_name(tmp_path: Path) -> None:
@@ -375,6 +375,6 @@ def test_what_cannot_change_an_answer_is_not_reported(tmp_path: Path) -> None:
     )  # fmt: skip
     remarks = [text for _, text in imported(tmp_path, text).remarks]
     assert not [each for each in remarks if "Pen" in each or "Tolerance" in each or "WindDirection" in each]
-    told = ("TensionTorqueCoupling 4:", "RampStartTime -4:", "WaveKinematicsCutoffDepth 20:", "MoonpoolOpen 4:")
-    for name in (*told, "DynamicsSolutionMethod Frequency domain:"):
+    texts = ("TensionTorqueCoupling 4:", "RampStartTime -4:", "WaveKinematicsCutoffDepth 20:", "MoonpoolOpen 4:")
+    for name in (*texts, "DynamicsSolutionMethod Frequency domain:"):
         line_with(remarks, name)

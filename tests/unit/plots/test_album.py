@@ -184,32 +184,32 @@ def test_all_pictures_of_a_riser_alone(run: Run, tmp_path: Path) -> None:
 
 def test_a_film_is_drawn_where_it_is_asked_for(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """`plot` alone draws all else; each picture is reported before it is drawn, and the last one after it."""
-    told: list[tuple[str, int, int]] = []
-    monkeypatch.setattr(DrawingProgress, "tell", lambda _, *given: told.append(given))
+    progress: list[tuple[str, int, int]] = []
+    monkeypatch.setattr(DrawingProgress, "tell", lambda _, *given: progress.append(given))
     monkeypatch.setattr("riser_soil.plots.album.picture", lambda _, file: Path(file).touch())
     monkeypatch.setattr("riser_soil.plots.album.film", lambda _, file, **given: Path(file).touch())
     monkeypatch.setattr("riser_soil.plots.album.save", lambda _, file: file.touch())
     drawn = [*(each.name for each in pictures(stage_records(run))), "touchdown"]
     for asked, films in (([], []), (["--film"], ["film"]), (["--what", "shape", "--film"], ["film"])):
-        told.clear()
+        progress.clear()
         folder = tmp_path / str(len(asked))
         done = CliRunner().invoke(app, ["plot", str(run.folder), "-o", str(folder), *asked])
         assert done.exit_code == 0, done.output
         expected = [*(["shape"] if "shape" in asked else drawn), *films]
         assert sorted(file.stem for file in folder.iterdir()) == sorted(expected)
         count = len(expected)
-        assert told == [*((name, n, count) for n, name in enumerate(expected)), (expected[-1], count, count)]
+        assert progress == [*((name, n, count) for n, name in enumerate(expected)), (expected[-1], count, count)]
 
 
 def test_frames_of_a_film_and_pictures_of_a_report_are_reported(run: Run, tmp_path: Path) -> None:
-    told: list[tuple[str, int, int]] = []
-    film(run.folder, tmp_path / "riser.gif", period=0.3, tell=lambda *given: told.append(given))
-    assert told == [("film: frames", n, 4) for n in range(5)]
-    told.clear()
-    page = write_report(of_folders([run.folder], {}), tmp_path / "report.html", lambda *given: told.append(given))
+    progress: list[tuple[str, int, int]] = []
+    film(run.folder, tmp_path / "riser.gif", period=0.3, tell=lambda *given: progress.append(given))
+    assert progress == [("film: frames", n, 4) for n in range(5)]
+    progress.clear()
+    page = write_report(of_folders([run.folder], {}), tmp_path / "report.html", lambda *given: progress.append(given))
     drawn = page.read_text(encoding="utf-8").count("<img ")
-    assert [(done, count) for _, done, count in told] == [(n, drawn) for n in range(drawn)]
-    assert any("shape" in words.lower() for words, _, _ in told)
+    assert [(done, count) for _, done, count in progress] == [(n, drawn) for n in range(drawn)]
+    assert any("shape" in words.lower() for words, _, _ in progress)
 
 
 def test_progress_of_drawing_shows_number_and_per_cent() -> None:

@@ -35,15 +35,15 @@ def test_moment_along_the_arc_and_its_envelope(run: Run) -> None:
     assert left.get_ylabel().endswith("[kN m]")
     envelope(right, run, "bending_moment", since=1.0)
     low, high = right.dataLim.intervaly
-    seen = 1e-3 * run["bending_moment"][run.time >= 1.0]
-    assert [low, high] == pytest.approx([seen.min(), seen.max()])
+    moments = 1e-3 * run["bending_moment"][run.time >= 1.0]
+    assert [low, high] == pytest.approx([moments.min(), moments.max()])
 
 
 def test_reactions_and_tension_in_time(run: Run, tmp_path: Path) -> None:
     figure, panels = sheet(3, 2)
     end_reactions(panels[:4], {"one": run, "other": run}, since=0.5)
-    seen = run.time >= 0.5
-    assert panels[3].lines[1].get_data()[1] == pytest.approx(1e-3 * run["end_force"][seen, 2])
+    window = run.time >= 0.5
+    assert panels[3].lines[1].get_data()[1] == pytest.approx(1e-3 * run["end_force"][window, 2])
     line_with(panels[0].get_ylabel(), "H at end A", "[kN]", "+ towards end A")
     end_tension(panels[4], run)
     assert panels[4].lines[0].get_data()[1] == pytest.approx(1e-3 * run["effective_tension"][:, -1])

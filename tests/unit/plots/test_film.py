@@ -35,22 +35,22 @@ def folder(tmp_path: Path) -> Path:
 
 def frames(gif: Path) -> list[np.ndarray]:
     with Image.open(gif) as image:
-        seen = []
+        images = []
         for frame in ImageSequence.Iterator(image):
             assert frame.info["duration"] == 200
-            seen.append(np.asarray(frame.convert("RGB")).astype(int))
-    return seen
+            images.append(np.asarray(frame.convert("RGB")).astype(int))
+    return images
 
 
 def test_a_film_shows_every_frame_of_the_stage(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    told: list[tuple[str, int, int]] = []
-    monkeypatch.setattr(DrawingProgress, "tell", lambda _, *given: told.append(given))
+    progress: list[tuple[str, int, int]] = []
+    monkeypatch.setattr(DrawingProgress, "tell", lambda _, *given: progress.append(given))
     done = CliRunner().invoke(app, ["film", str(folder), "-o", str(folder / "film.gif"), "--stage", "heave"])
     assert (done.exit_code, done.output.strip()) == (0, str(folder / "film.gif"))
-    seen = frames(folder / "film.gif")
-    assert told == [("film: frames", n, 3) for n in range(3)]
-    assert [image.shape for image in seen] == [(540, 960, 3)] * 3
-    drawing = [image[80:400] for image in seen]  # without caption and colour bar
+    images = frames(folder / "film.gif")
+    assert progress == [("film: frames", n, 3) for n in range(3)]
+    assert [image.shape for image in images] == [(540, 960, 3)] * 3
+    drawing = [image[80:400] for image in images]  # without caption and colour bar
     for this, following in pairwise(drawing):
         assert (np.abs(this - following).sum(axis=2) > 60).mean() > 1e-4
     blue = np.abs(drawing[0] - np.array([60, 110, 150])).sum(axis=2) < 60

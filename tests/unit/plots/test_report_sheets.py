@@ -87,15 +87,15 @@ def test_utilisations_share_a_sheet_with_their_limit(run: Run) -> None:
 
 
 def test_few_cases_are_named_below_their_points(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    seen: list[list[str]] = []
+    labels: list[list[str]] = []
 
     def look(figure: Figure, png: Path) -> Path:
-        seen.append([label.get_text() for label in figure.axes[-1].get_xticklabels()])
+        labels.append([label.get_text() for label in figure.axes[-1].get_xticklabels()])
         return png
 
     monkeypatch.setattr("riser_soil.plots.load_cases.save", look)
     draw_load_cases(tmp_path / "a.png", "t", [Panel(["near", "far"], "moment", "N.m", np.array([1.0, 2.0]))])
-    assert seen == [["near", "far"]]
+    assert labels == [["near", "far"]]
 
 
 def test_a_spectrum_has_the_sea_that_it_is_asked_for() -> None:

@@ -36,8 +36,8 @@ def exact(end: float, layer: float) -> float:
 
 def intervals(arc: Array, share: Array, clearance: Array, force: Array) -> list[ContactInterval]:
     """Of one state."""
-    (found,) = contact_intervals(arc, share, clearance[None], force[None])
-    return found
+    (interval,) = contact_intervals(arc, share, clearance[None], force[None])
+    return interval
 
 
 @both_rules
@@ -47,8 +47,8 @@ def test_rigid_contact_with_the_same_resultant(rule: str, layer: float, toleranc
     arc, share = points(rule)
     end = float(NODES[220])
     clearance, force = landed(arc, end, layer)
-    found = touchdown(arc, share, clearance, force)
-    assert found == pytest.approx(exact(end, layer), abs=tolerance if rule == "line" else 0.05)
+    place = touchdown(arc, share, clearance, force)
+    assert place == pytest.approx(exact(end, layer), abs=tolerance if rule == "line" else 0.05)
 
 
 @pytest.mark.parametrize("before", [0.9, 2.5, 6.0])
@@ -62,9 +62,9 @@ def test_contact_that_ends_close_to_the_riser_s_end(before: float) -> None:
 def test_softness_of_the_bed_cancels() -> None:
     """The force ends 0.45 m apart; the touchdown points differ by second-order terms in the layer's length."""
     arc, share = points("line", np.linspace(0.0, LENGTH, 3201))
-    found = [touchdown(arc, share, *landed(arc, 22.0 + layer, layer)) for layer in (0.05, 0.5)]
-    assert exact(22.05, 0.05) - exact(22.5, 0.5) == pytest.approx(found[0] - found[1], abs=2e-3)
-    assert abs(found[0] - found[1]) < 0.1
+    places = [touchdown(arc, share, *landed(arc, 22.0 + layer, layer)) for layer in (0.05, 0.5)]
+    assert exact(22.05, 0.05) - exact(22.5, 0.5) == pytest.approx(places[0] - places[1], abs=2e-3)
+    assert abs(places[0] - places[1]) < 0.1
 
 
 @both_rules
@@ -73,8 +73,8 @@ def test_even_force_ends_at_the_touchdown_point(rule: str, level: float) -> None
     """However large: a riser that slaps the ground evenly touches down at the end of it."""
     arc, share = points(rule)
     force = np.where(arc < NODES[200], level * W, 0.0)
-    found = touchdown(arc, share, np.where(force > 0.0, -1e-3, 1e-3), force)
-    assert found == pytest.approx(NODES[200], abs=0.15)
+    place = touchdown(arc, share, np.where(force > 0.0, -1e-3, 1e-3), force)
+    assert place == pytest.approx(NODES[200], abs=0.15)
 
 
 def test_what_lies_far_behind_does_not_matter() -> None:
@@ -115,8 +115,8 @@ def test_stretches_part_at_spans_and_not_at_a_layers_small_gaps() -> None:
 def test_a_trench_in_which_the_riser_hangs_is_no_place_where_it_lies() -> None:
     arc, share = points("line")
     clearance = np.where((arc < 20.0) | ((arc > 25.0) & (arc < 30.0)), -0.1, 0.2)
-    found = intervals(arc, share, clearance, np.where(arc < 18.0, W, 0.0))
-    assert [s.end for s in found] == pytest.approx([18.0], abs=0.1)
+    lying = intervals(arc, share, clearance, np.where(arc < 18.0, W, 0.0))
+    assert [s.end for s in lying] == pytest.approx([18.0], abs=0.1)
 
 
 def test_ripples_where_the_force_ends_do_not_matter() -> None:
@@ -126,8 +126,8 @@ def test_ripples_where_the_force_ends_do_not_matter() -> None:
     clearance, force = landed(arc, end, 0.5)
     expected = touchdown(arc, share, clearance, force)
     ahead = np.where((arc > end) & (arc < end + 0.6), 1e-3 * W * np.sin(10.0 * (arc - end)), 0.0)
-    found = touchdown(arc, share, np.where(ahead != 0.0, -1e-9, clearance), force + ahead)
-    assert found == pytest.approx(expected, abs=1e-3)
+    place = touchdown(arc, share, np.where(ahead != 0.0, -1e-9, clearance), force + ahead)
+    assert place == pytest.approx(expected, abs=1e-3)
 
 
 @pytest.mark.parametrize("layer", [0.2, 0.5, 1.5])
@@ -136,8 +136,8 @@ def test_moves_as_smoothly_as_the_forces(layer: float) -> None:
     arc, share = points("line", np.linspace(0.0, LENGTH, 161))
     moved = 0.005
     ends = 22.0 + moved * np.arange(60)
-    found = np.array([touchdown(arc, share, *settled(arc, end, layer)) for end in ends])
-    assert np.abs(np.diff(found) - moved).max() < 0.05 * moved
+    places = np.array([touchdown(arc, share, *settled(arc, end, layer)) for end in ends])
+    assert np.abs(np.diff(places) - moved).max() < 0.05 * moved
 
 
 def settled(arc: Array, end: float, layer: float) -> tuple[Array, Array]:

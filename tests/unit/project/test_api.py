@@ -143,7 +143,7 @@ def test_twenty_seeds(
     """The example of docs/python.md with its computation replaced."""
     seeds, done = [], SimpleNamespace(dataset=hung.dataset)
 
-    def reported(scene: Scene, folder: str, quiet: bool) -> SimpleNamespace:
+    def fake_run(scene: Scene, folder: str, quiet: bool) -> SimpleNamespace:
         assert scene.model.water is not None
         assert scene.model.water.waves is not None
         assert scene.model.water.waves.jonswap is not None
@@ -152,7 +152,7 @@ def test_twenty_seeds(
         return done
 
     monkeypatch.chdir(ROOT)
-    monkeypatch.setitem(sys.modules, "riser_soil", SimpleNamespace(Scene=Scene, run=reported, Run=Run))
+    monkeypatch.setitem(sys.modules, "riser_soil", SimpleNamespace(Scene=Scene, run=fake_run, Run=Run))
     exec(TWENTY_SEEDS, {})
     assert seeds == list(range(1, 21))
     assert capsys.readouterr().out.startswith("largest top tension: 8")

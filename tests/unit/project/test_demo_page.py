@@ -43,7 +43,7 @@ def test_figures_within_sentences_are_filled_and_read() -> None:
 
 
 @pytest.mark.parametrize(
-    ("told", "computed", "same"),
+    ("shown", "computed", "same"),
     [
         ("76.48 to 100.25 kN", "76.49 to 100.25 kN", True),
         ("76.46 to 100.25 kN", "76.48 to 100.25 kN", False),
@@ -52,18 +52,18 @@ def test_figures_within_sentences_are_filled_and_read() -> None:
         ("2.0", "2.0 and 3.0", False),
     ],
 )
-def test_figures_are_the_same_but_for_the_last_digit(told: str, computed: str, same: bool) -> None:
-    assert same_figures(told, computed) is same
+def test_figures_are_the_same_but_for_the_last_digit(shown: str, computed: str, same: bool) -> None:
+    assert same_figures(shown, computed) is same
 
 
 def test_sentences_of_the_demos_tell_what_their_tables_have() -> None:
     """`make figures` writes them anew, after the tables."""
-    told: dict[str, set[str]] = {}
+    stated: dict[str, set[str]] = {}
     for page in all_pages():
         for name, texts in places(page.read_text(encoding="utf-8")).items():
-            told.setdefault(name, set()).update(texts)
-    found = table_figures()
-    assert {name: told[name] for name in found} == {name: {text} for name, text in found.items()}
+            stated.setdefault(name, set()).update(texts)
+    figures = table_figures()
+    assert {name: stated[name] for name in figures} == {name: {text} for name, text in figures.items()}
 
 
 def test_every_figure_in_a_sentence_has_a_script_or_a_test() -> None:
@@ -72,8 +72,8 @@ def test_every_figure_in_a_sentence_has_a_script_or_a_test() -> None:
         own = script.read_text(encoding="utf-8") if script.exists() else ""
         for name in FIGURE.findall(page.read_text(encoding="utf-8")):
             known = name in table_figures() or name.startswith((*QUICK, "demo "))  # whose tests compare them with runs
-            told = any(re.fullmatch(each, name) for each in TOLD)
-            assert known or told or f'"{name}"' in own, f"{page}: {name} is written by no script"
+            listed = any(re.fullmatch(each, name) for each in TOLD)
+            assert known or listed or f'"{name}"' in own, f"{page}: {name} is written by no script"
 
 
 @pytest.mark.parametrize("page", all_pages(), ids=lambda page: str(page.relative_to(ROOT)))

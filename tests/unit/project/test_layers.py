@@ -84,16 +84,16 @@ def package_of(module: str, path: Path) -> str:
 
 def violations(module: str, source: str, package: str) -> list[str]:
     """Imports of a module from its own layer's other folders or from later ones, or of what is kept elsewhere."""
-    found, mine = [], module.split(".")[1]
+    wrong, mine = [], module.split(".")[1]
     for name in imported_names(source, package):
         target = name.split(".")[1] if name.startswith("riser_soil.") else ""
         if target in RANK and target != mine and RANK[target] >= RANK[mine]:
-            found.append(f"{module} imports {name}, which is not in a layer before it")
+            wrong.append(f"{module} imports {name}, which is not in a layer before it")
         for kept, where in ONLY_IN.items():
             places = where if isinstance(where, tuple) else (where,)
             if within(name, kept) and not any(within(module, place) for place in places):
-                found.append(f"{module} imports {name}, which is kept to {' and '.join(places)}")
-    return found
+                wrong.append(f"{module} imports {name}, which is kept to {' and '.join(places)}")
+    return wrong
 
 
 def modules() -> dict[str, Path]:

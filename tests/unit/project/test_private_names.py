@@ -38,14 +38,14 @@ INSIDE: tuple[Any, ...] = (
 
 def members(kind: Any) -> set[str]:
     """Attributes of a class and of its objects."""
-    found = {*dir(kind), *getattr(kind, "_fields", ())}
+    names = {*dir(kind), *getattr(kind, "_fields", ())}
     for base in inspect.getmro(kind):
         try:
             tree = ast.parse(textwrap.dedent(inspect.getsource(base)))
         except (OSError, TypeError):  # of C's
             continue
-        found |= {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute) and is_own(node.value)}
-    return found
+        names |= {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute) and is_own(node.value)}
+    return names
 
 
 def is_own(node: ast.expr) -> bool:
@@ -58,8 +58,8 @@ def private() -> set[str]:
     usual = {name for kind in (object, list, dict, str, tuple, type(ast)) for name in dir(kind)}
     of_types = {name for name in dir(numba.types.float64) if name.startswith("_")}
     options = {name for name in dir(cpu.CPUTargetOptions) if name not in dir(TargetOptions)}
-    found = set().union(*map(members, INSIDE), of_types, options) - usual - DOCUMENTED - OTHERS - OPTIONS
-    return {name for name in found if not name.startswith("__")}
+    names = set().union(*map(members, INSIDE), of_types, options) - usual - DOCUMENTED - OTHERS - OPTIONS
+    return {name for name in names if not name.startswith("__")}
 
 
 def imports(tree: ast.AST) -> Iterator[tuple[str, str]]:
@@ -89,10 +89,10 @@ def words(tree: ast.AST) -> Iterator[str]:
 def used(text: str, private: set[str]) -> set[str]:
     """Private names in a source."""
     tree = ast.parse(text)
-    taken = list(imports(tree))
-    if not taken:
+    names = list(imports(tree))
+    if not names:
         return set()
-    named = {name or module for module, name in taken if not {module, f"{module}.{name}"} & PUBLIC}
+    named = {name or module for module, name in names if not {module, f"{module}.{name}"} & PUBLIC}
     return named | set(words(tree)) & private
 
 

@@ -29,15 +29,16 @@ def as_list(name: str) -> set[str]:
 def pins(name: str, python: str) -> dict[str, tuple[str, int]]:
     """Version and number of hashes of each package pinned for a Python."""
     text = (ROOT / f"requirements/{name}-pins.txt").read_text(encoding="utf-8").replace("\\\n", " ")
-    found: dict[str, tuple[str, int]] = {}
+    versions: dict[str, tuple[str, int]] = {}
     for line in (line for line in text.splitlines() if not line.startswith("#")):
         pin, *hashes = line.split(" --hash=sha256:")
         asked = Requirement(pin)
         if holds(asked, {"python_version": python, "python_full_version": f"{python}.0"}):
-            assert asked.name not in found, f"{asked.name} is pinned twice for Python {python}"
+            assert asked.name not in versions, f"{asked.name} is pinned twice for Python {python}"
             assert str(asked.specifier).startswith("==")
-            found[asked.name] = str(asked.specifier)[2:], len([h for h in hashes if re.fullmatch("[0-9a-f]{64} *", h)])
-    return found
+            count = len([h for h in hashes if re.fullmatch("[0-9a-f]{64} *", h)])
+            versions[asked.name] = str(asked.specifier)[2:], count
+    return versions
 
 
 def holds(asked: Requirement, environment: dict[str, str]) -> bool:
@@ -67,10 +68,10 @@ def test_pins_are_what_the_project_asks_for(python: str) -> None:
     for_users = [text for extra, texts in extras.items() if extra not in APART for text in texts]
     asked = {"run": [*project["dependencies"], *for_users], "dev": extras["dev"]}
     for name, texts in asked.items():
-        found, needed = pins(name, python), [Requirement(text) for text in texts]
+        versions, needed = pins(name, python), [Requirement(text) for text in texts]
         assert {canonicalize_name(r.name) for r in needed} - DEBIAN == as_list(name)
         for each in needed:
-            assert each.name in DEBIAN or each.specifier.contains(found[canonicalize_name(each.name)][0]), str(each)
+            assert each.name in DEBIAN or each.specifier.contains(versions[canonicalize_name(each.name)][0]), str(each)
 
 
 def test_all_is_every_extra_for_users() -> None:
@@ -81,11 +82,11 @@ def test_all_is_every_extra_for_users() -> None:
 
 def test_what_pinned_packages_need_is_there() -> None:
     python = "{}.{}".format(*sys.version_info)
-    found = pins("run", python) | pins("dev", python)
-    for name in found:
+    versions = pins("run", python) | pins("dev", python)
+    for name in versions:
         for needed in map(Requirement, requires(name) or []):
             if holds(needed, {"extra": ""}):
-                assert needed.name in DEBIAN or canonicalize_name(needed.name) in found, f"{name} needs {needed}"
+                assert needed.name in DEBIAN or canonicalize_name(needed.name) in versions, f"{name} needs {needed}"
                 assert needed.specifier.contains(version(needed.name), prereleases=True), f"{name} needs {needed}"
 
 

@@ -28,8 +28,8 @@ def idioms(code: str) -> Iterator[str]:
 
 def test_texts_of_the_package_have_words_of_the_field() -> None:
     files = sorted((ROOT / "riser_soil").rglob("*.py"))
-    found = [f"{file.relative_to(ROOT)}:{text}" for file in files for text in idioms(file.read_text(encoding="utf-8"))]
-    assert found == []
+    lines = [f"{file.relative_to(ROOT)}:{text}" for file in files for text in idioms(file.read_text(encoding="utf-8"))]
+    assert lines == []
 
 
 def test_idioms_are_found_in_texts_and_not_in_docstrings() -> None:

@@ -93,9 +93,9 @@ def test_one_document_has_a_row_a_case_and_names_the_governing_one(run: Path, ca
     own = 1e-3 * Run(run).summary["stages"][1]["extremes"][MOMENT]["max"]
     assert len(moments) == 11
     assert moments["near-best-seed=2"] == pytest.approx(1.9 * own, rel=1e-3)
-    found = next(row for row in table(items, "summary").rows if row[0] == "maximum bending moment")
-    assert found[3] == "near-best-seed=2"
-    assert float(found[1]) == pytest.approx(1.9 * own, rel=1e-3)
+    entry = next(row for row in table(items, "summary").rows if row[0] == "maximum bending moment")
+    assert entry[3] == "near-best-seed=2"
+    assert float(entry[1]) == pytest.approx(1.9 * own, rel=1e-3)
     titles = [item.title for item in items if isinstance(item, Heading) and item.level == 1]
     assert titles.count("Extremes") == 1
 
@@ -107,8 +107,8 @@ def test_seeds_are_one_group_with_mean_and_extreme(run: Path, cases: Path) -> No
     }  # fmt: skip
     own = 1e-3 * Run(run).summary["stages"][1]["extremes"][MOMENT]["max"]
     rows = table(items_of(sources), "seeds").rows
-    found = next(row for row in rows if row[:2] == ["near, best", "maximum bending moment"])
-    assert [float(value) for value in found[3:]] == pytest.approx(
+    entry = next(row for row in rows if row[:2] == ["near, best", "maximum bending moment"])
+    assert [float(value) for value in entry[3:]] == pytest.approx(
         [3, own * np.mean(FACTORS["near"]), own * np.std(FACTORS["near"], ddof=1), own * 1.9], rel=1e-3
     )
 

@@ -68,8 +68,8 @@ def document(tmp_path_factory: pytest.TempPathFactory) -> ReportDocument:
 
 def streams(pdf: bytes) -> str:
     """What a PDF's compressed streams hold, as far as it is text."""
-    found = re.findall(rb"stream\r?\n(.*?)\r?\nendstream", pdf, re.DOTALL)
-    return "\n".join(inflated(each).decode("latin-1") for each in found)
+    blocks = re.findall(rb"stream\r?\n(.*?)\r?\nendstream", pdf, re.DOTALL)
+    return "\n".join(inflated(each).decode("latin-1") for each in blocks)
 
 
 def inflated(data: bytes) -> bytes:

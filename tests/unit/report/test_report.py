@@ -85,9 +85,9 @@ def table(items: list[Item], key: str) -> ReportTable:
 
 def row(content: ReportTable, *words: str) -> dict[str, str]:
     """The row that begins with these words, by the heads of the columns; a head that comes twice keeps both."""
-    found = next(row for row in content.rows if tuple(row[: len(words)]) == words)
+    match = next(row for row in content.rows if tuple(row[: len(words)]) == words)
     named = [f"{head}{'' if head not in content.head[:n] else ' (2)'}" for n, head in enumerate(content.head)]
-    return dict(zip(named, found, strict=True))
+    return dict(zip(named, match, strict=True))
 
 
 def texts(items: list[Item]) -> Iterator[str]:
@@ -166,9 +166,9 @@ def test_figures_can_be_read_on_paper(items: list[Item]) -> None:
 
 def test_a_browser_opens_the_page(page: Path, tmp_path: Path) -> None:
     shot = tmp_path / "page.png"
-    seen = visit(page, "--dump-dom", f"--screenshot={shot}", "--window-size=1200,2400")
-    assert seen.console == []
-    assert "Static configuration" in seen.printed
+    output = visit(page, "--dump-dom", f"--screenshot={shot}", "--window-size=1200,2400")
+    assert output.console == []
+    assert "Static configuration" in output.printed
     pixels = np.asarray(Image.open(shot).convert("RGB")).astype(int)
     assert pixels.shape[:2] == (2400, 1200)
     assert 0.02 < (pixels.sum(axis=2) < 600).mean() < 0.6, "text and pictures on white"
@@ -190,13 +190,13 @@ def test_the_browser_would_tell(tmp_path: Path) -> None:
 def test_the_summary_has_the_values_of_the_run_in_units_of_the_field(run: Run, items: list[Item]) -> None:
     stage = run.summary["stages"][1]
     moment = stage["extremes"]["max_bending_moment"]
-    found = row(table(items, "summary"), "maximum bending moment")
-    value, bar = found["value"].split(" ± ")
+    entry = row(table(items, "summary"), "maximum bending moment")
+    value, bar = entry["value"].split(" ± ")
     assert float(value) == pytest.approx(1e-3 * moment["max"], rel=1e-3)
     assert float(bar) == pytest.approx(0.012)
-    assert (found["unit"], found["load step"], found["load case"]) == ("kN m", "heave", "run")
-    assert float(found["arc length [m]"]) == pytest.approx(moment["arc_max"], rel=1e-4)
-    assert float(found["time [s]"]) == pytest.approx(moment["t_max"], rel=1e-3)
+    assert (entry["unit"], entry["load step"], entry["load case"]) == ("kN m", "heave", "run")
+    assert float(entry["arc length [m]"]) == pytest.approx(moment["arc_max"], rel=1e-4)
+    assert float(entry["time [s]"]) == pytest.approx(moment["t_max"], rel=1e-3)
     radius = row(table(items, "summary"), "minimum bend radius (MBR)")
     assert float(radius["value"]) == pytest.approx(stage["extremes"]["min_bend_radius"]["min"], rel=1e-3)
     use = stage["extremes"]["max_bend_utilisation"]["max"]
@@ -232,8 +232,8 @@ def test_reactions_count_from_the_vertical_and_leave_round_off_away(run: Run) ->
     words = [words for words, *_ in reactions_table(stage).rows]
     assert not [each for each in words if "moment" in each]
     stage["extremes"]["start"]["moment"]["max"] = [0.0, 0.1 * largest, 0.0]
-    found = row(reactions_table(stage), "end A: moment, y")
-    assert float(found["max."]) == pytest.approx(1e-4 * largest, rel=1e-3)
+    entry = row(reactions_table(stage), "end A: moment, y")
+    assert float(entry["max."]) == pytest.approx(1e-4 * largest, rel=1e-3)
     angle = row(reactions_table(stage), "end B: angle from the vertical")
     given = stage["extremes"]["end"]["angle_deg"]
     assert float(angle["min."]) == pytest.approx(90.0 - given["max"], rel=1e-3)
@@ -248,9 +248,9 @@ def test_error_bars_have_their_parts(run: Run) -> None:
 
 def test_energy_and_versions_and_warnings(run: Run, items: list[Item]) -> None:
     stage = run.summary["stages"][1]
-    reported = row(energy_table(stage), "work of external forces on line and ground since the load step began")
-    assert float(reported["kJ"]) == pytest.approx(1e-3 * stage["energy"]["work"], rel=1e-4)
-    assert float(reported["% of the largest"]) == pytest.approx(100.0)
+    entry = row(energy_table(stage), "work of external forces on line and ground since the load step began")
+    assert float(entry["kJ"]) == pytest.approx(1e-3 * stage["energy"]["work"], rel=1e-4)
+    assert float(entry["% of the largest"]) == pytest.approx(100.0)
     assert ("riser_soil", "0.1.0") in [tuple(row) for row in versions_table(run.summary).rows]
     assert warnings_of(run.summary)[0] == WARNING
     assert [item for item in items if isinstance(item, Points) and WARNING in item.items]
@@ -278,8 +278,8 @@ def test_the_input_of_a_law_is_in_units_of_the_field() -> None:
 
 
 def test_without_a_code_check_that_is_said(run: Run, items: list[Item], tmp_path: Path) -> None:
-    def said(found: list[Item]) -> list[str]:
-        return [item.text for item in found if isinstance(item, Paragraph) and "No code check" in item.text]
+    def said(items: list[Item]) -> list[str]:
+        return [item.text for item in items if isinstance(item, Paragraph) and "No code check" in item.text]
 
     assert table(items, "checks").rows
     assert said(items) == []
@@ -301,32 +301,32 @@ def test_walls_contents_and_hang_off_of_the_scene(run: Run, tmp_path: Path) -> N
     flow = "current: {profile: [[0.0, 0.1, 0.0], [110.0, 0.6, 0.0]]}"
     wet = pressed.replace("water: {density: 1025.0}", f"water: {{density: 1025.0, {waves}, {flow}}}")
     (folder / "scene.yaml").write_text(wet, encoding="utf-8")
-    reported = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    reported["hang_off"] = {"end": "end", "asked": {"tension": 9e4}, "by": "layback", "value": 81.25}
-    (folder / "summary.json").write_text(json.dumps(reported), encoding="utf-8")
-    found = numbered(document_of(opened(of_folders([folder], {}))))
-    pipe = next(item.content for item in found if isinstance(item, TableBlock) and "line types" in item.caption)
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    summary["hang_off"] = {"end": "end", "asked": {"tension": 9e4}, "by": "layback", "value": 81.25}
+    (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    items = numbered(document_of(opened(of_folders([folder], {}))))
+    pipe = next(item.content for item in items if isinstance(item, TableBlock) and "line types" in item.caption)
     assert row(pipe, "specified minimum yield stress")["flexible"] == "448"
     assert not [row for row in pipe.rows if "damping" in row[0]]
-    sea = next(item.content for item in found if isinstance(item, TableBlock) and item.caption.startswith("Sea states"))
+    sea = next(item.content for item in items if isinstance(item, TableBlock) and item.caption.startswith("Sea states"))
     assert row(sea, "irregular, JONSWAP")["seeds"] == "7"
-    current = next(item.content for item in found if isinstance(item, TableBlock) and item.caption == "Current")
+    current = next(item.content for item in items if isinstance(item, TableBlock) and item.caption == "Current")
     assert [cells[-1] for cells in current.rows] == ["0.1", "0.6"]
-    words = "\n".join(texts(found))
+    words = "\n".join(texts(items))
     line_with(words, "End B hangs off", "90 kN", "layback of 81.25 m")
     line_with(words, "850 kg/m³", "20 MPa")
-    assert {"Current by height", "Wave spectra"} <= {item.caption for item in found if isinstance(item, PictureBlock)}
+    assert {"Current by height", "Wave spectra"} <= {item.caption for item in items if isinstance(item, PictureBlock)}
 
 
 @pytest.mark.parametrize(
-    ("value", "reported"),
+    ("value", "text"),
     [
         *((None, "–"), (float("nan"), "–"), (0.0, "0"), (1543.21, "1543.2")),
         *((123456.7, "123457"), (1.5e-7, "1.5e-07"), (3e8, "3e+08")),
     ],
 )
-def test_numbers_read_well(value: float | None, reported: str) -> None:
-    assert number(value) == reported
+def test_numbers_read_well(value: float | None, text: str) -> None:
+    assert number(value) == text
 
 
 def test_columns_without_anything_have_no_place() -> None:
@@ -338,10 +338,10 @@ def test_a_run_whose_scene_is_gone_is_reported_without_it(run: Run, tmp_path: Pa
     folder = tmp_path / "run"
     shutil.copytree(run.folder, folder)
     (folder / "scene.yaml").unlink()
-    found = numbered(document_of(opened(of_folders([folder], {}))))
-    words = "\n".join(texts(found))
+    document = numbered(document_of(opened(of_folders([folder], {}))))
+    words = "\n".join(texts(document))
     line_with(words, "input file cannot be read", "values are not shown")
-    assert table(found, "summary").rows
+    assert table(document, "summary").rows
     assert str(tmp_path) not in words
 
 

@@ -25,10 +25,10 @@ class Misfit(NamedTuple):
     steep: float
 
 
-def found(scene: Mapping) -> tuple[Misfit, float]:
+def misfit_of(scene: Mapping) -> tuple[Misfit, float]:
     """At the end of the last stage, and the riser's largest bending moment then [N.m]."""
     assembly = built(scene)
-    reported: list[tuple[Misfit, float]] = []
+    misfits: list[tuple[Misfit, float]] = []
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
         line, elements, accepted = assembly.riser.line, assembly.riser.elements, stepper.newton.accepted
@@ -36,17 +36,17 @@ def found(scene: Mapping) -> tuple[Misfit, float]:
         smooth, steep = bending_misfits(line, elements, sections)
         residual = accepted.element_residual(line, stepper.now)
         moment = np.abs(residual[:, [2, -1]] if line.dimension == 2 else residual[:, [4, 10]])
-        reported.append((Misfit(float(smooth.max()), float(steep.max())), float(moment.max())))
+        misfits.append((Misfit(float(smooth.max()), float(steep.max())), float(moment.max())))
 
     before = State.at_rest(0.0, assembly.size)
     for stage in assembly.scene.stages:
         before = run_stage(assembly, stage, before, Watcher(watch), Timer.new())
-    return reported[-1]
+    return misfits[-1]
 
 
-def too_long(reported: Misfit, largest: float) -> bool:
+def too_long(misfit: Misfit, largest: float) -> bool:
     """By the limits that warnings have."""
-    return reported.smooth > 0.1 * largest or reported.steep > 0.2 * largest
+    return misfit.smooth > 0.1 * largest or misfit.steep > 0.2 * largest
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -60,10 +60,10 @@ def test_a_cantilever_under_its_weight(elements: int, dimension: int) -> None:
     scene = riser_scene(
         static(), pipe=pipe, length=10.0, elements=elements, start=start, end="free", gravity=9.81, dimension=dimension
     )
-    reported, largest = found(scene)
+    misfit, largest = misfit_of(scene)
     assert largest == pytest.approx(50.0, rel=1e-5)
-    assert reported.steep == pytest.approx(50.0 / (6.0 * elements**2), rel=1e-4)
-    assert reported.smooth < 1e-4
+    assert misfit.steep == pytest.approx(50.0 / (6.0 * elements**2), rel=1e-4)
+    assert misfit.smooth < 1e-4
 
 
 def test_two_bending_stiffnesses_have_each_their_curvature() -> None:
@@ -71,9 +71,9 @@ def test_two_bending_stiffnesses_have_each_their_curvature() -> None:
     pipe: Mapping = {"EA": 1.0e9, "EI_y": 1.0e6, "EI_z": 3.0e6, "GJ": 1.0e6, "mass": 1.0}
     push = static(loads=[{"at": "end", "force": [0.0, 3.0, 2.0]}])
     start = prescribed(0.0, 0.0, 0.0, rotation="fixed")
-    reported, _ = found(riser_scene(push, pipe=pipe, length=10.0, elements=2, start=start, end="free"))
-    assert reported.steep < 1e-6
-    assert reported.smooth < 1e-6
+    misfit, _ = misfit_of(riser_scene(push, pipe=pipe, length=10.0, elements=2, start=start, end="free"))
+    assert misfit.steep < 1e-6
+    assert misfit.smooth < 1e-6
 
 
 def test_a_misfit_counts_with_the_larger_stiffness() -> None:
@@ -82,7 +82,7 @@ def test_a_misfit_counts_with_the_larger_stiffness() -> None:
     for y, z in ((1.0e5, 3.0e5), (3.0e5, 1.0e5)):
         pipe: Mapping = {"EA": 1.0e9, "EI_y": y, "EI_z": z, "GJ": 1.0e5, "mass": 1.0, "submerged_weight": 1.0}
         scene = riser_scene(static(), pipe=pipe, length=10.0, elements=4, start=start, end="free", gravity=9.81)
-        steep.append(found(scene)[0].steep)
+        steep.append(misfit_of(scene)[0].steep)
     assert sorted(steep) == pytest.approx([50.0 / 96.0, 150.0 / 96.0], rel=1e-3)
 
 
@@ -95,35 +95,35 @@ def hanging(elements: int, rotation: Any = "free", **more: Any) -> Mapping:
 
 
 @pytest.mark.parametrize(
-    ("elements", "least", "most", "reported"),
+    ("elements", "least", "most", "warned"),
     [(40, 3.0, 5.0, True), (80, 0.15, 0.3, True), (160, 0.005, 0.02, False), (320, 0.0, 0.002, False)],
 )
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_moments_of_a_long_riser(elements: int, least: float, most: float, reported: bool, dimension: int) -> None:
+def test_moments_of_a_long_riser(elements: int, least: float, most: float, warned: bool, dimension: int) -> None:
     """The error of its largest moment lies between two bounds, and is told where it is large."""
-    seen, largest = found(hanging(elements, dimension=dimension))
+    misfit, largest = misfit_of(hanging(elements, dimension=dimension))
     assert least < abs(largest / 264.42 - 1.0) < most
-    assert too_long(seen, largest) == reported
+    assert too_long(misfit, largest) == warned
 
 
-@pytest.mark.parametrize(("elements", "most", "reported"), [(20, 0.4, True), (40, 0.09, True), (80, 0.02, False)])
-def test_moments_at_a_clamp(elements: int, most: float, reported: bool) -> None:
+@pytest.mark.parametrize(("elements", "most", "warned"), [(20, 0.4, True), (40, 0.09, True), (80, 0.02, False)])
+def test_moments_at_a_clamp(elements: int, most: float, warned: bool) -> None:
     """150 m, clamped in the direction of the catenary, then moved by 10 m; its largest moment is 3,207.4 N.m."""
     pipe: Mapping = {"EA": 3.0e8, "EI": 5.0e4, "mass": 120.0, "submerged_weight": 700.0}
     ends = prescribed(0.0, 0.0, 60.0), prescribed(80.0, 0.0, 100.0, rotation="fixed")
     stages = static("hang"), static("pull", move={"end": [90.0, 0.0, 100.0]})
     options: Mapping = {"pipe": pipe, "length": 150.0, "elements": elements, "start": ends[0], "end": ends[1]}
-    seen, largest = found(riser_scene(*stages, **options, gravity=9.81))
+    misfit, largest = misfit_of(riser_scene(*stages, **options, gravity=9.81))
     assert 0.2 * most < largest / 3207.4 - 1.0 < most
-    assert too_long(seen, largest) == reported
+    assert too_long(misfit, largest) == warned
 
 
 def test_a_straight_riser_bends_by_round_off_only() -> None:
     pipe: Mapping = {"EA": 1.0e8, "EI": 1.0e4, "mass": 50.0}
     pull = static(loads=[{"at": "end", "force": [1.0e5, 0.0, 0.0]}])
     start = prescribed(0.0, 0.0, 0.0, rotation="fixed")
-    reported, _ = found(riser_scene(pull, pipe=pipe, length=30.0, elements=6, start=start, end="free"))
-    assert max(reported.smooth, reported.steep) < 1e-6
+    misfit, _ = misfit_of(riser_scene(pull, pipe=pipe, length=30.0, elements=6, start=start, end="free"))
+    assert max(misfit.smooth, misfit.steep) < 1e-6
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

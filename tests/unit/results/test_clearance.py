@@ -30,10 +30,10 @@ def test_random_segments_against_fine_points() -> None:
         a, b, c, d = rng.normal(size=(4, 3))
         first, second = a + along * (b - a), c + along * (d - c)
         fine = np.linalg.norm(first[:, None] - second[None], axis=2).min()
-        found, s, t = between_segments(a, b, c, d)
-        assert found <= fine + 1e-12
-        assert found == pytest.approx(fine, abs=2e-2)
-        assert np.linalg.norm(a + s * (b - a) - c - t * (d - c)) == pytest.approx(found)
+        distance, s, t = between_segments(a, b, c, d)
+        assert distance <= fine + 1e-12
+        assert distance == pytest.approx(fine, abs=2e-2)
+        assert np.linalg.norm(a + s * (b - a) - c - t * (d - c)) == pytest.approx(distance)
 
 
 def test_surfaces_and_what_counts() -> None:

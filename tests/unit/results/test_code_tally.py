@@ -13,7 +13,7 @@ FACTS = [
 ]
 
 
-def seen(*rows: tuple[float, float], place: float = 10.0) -> Record:
+def record(*rows: tuple[float, float], place: float = 10.0) -> Record:
     """Utilisations of both checks at instants in turn, at arcs 10 m and 20 m."""
     largest = np.array(rows)
     places = np.broadcast_to([place, 2.0 * place], largest.shape)
@@ -22,9 +22,9 @@ def seen(*rows: tuple[float, float], place: float = 10.0) -> Record:
 
 def followed() -> CodeTally:
     tally = CodeTally(FACTS)
-    tally.update(np.array([0.5, 1.0]), seen((0.2, 0.9), (0.3, 0.8)))
-    tally.update(np.array([1.5]), seen((0.25, 1.2), place=30.0))
-    tally.update(np.array([2.0]), seen((0.3, 1.2), place=50.0))
+    tally.update(np.array([0.5, 1.0]), record((0.2, 0.9), (0.3, 0.8)))
+    tally.update(np.array([1.5]), record((0.25, 1.2), place=30.0))
+    tally.update(np.array([2.0]), record((0.3, 1.2), place=50.0))
     return tally
 
 
@@ -51,5 +51,5 @@ def test_another_goes_on_from_what_was_saved() -> None:
     again = CodeTally(FACTS)
     again.restore(followed().state())
     assert again.as_list() == followed().as_list()
-    again.update(np.array([9.0]), seen((0.9, 0.1)))
+    again.update(np.array([9.0]), record((0.9, 0.1)))
     assert again.as_list()[0]["time"] == pytest.approx(9.0)

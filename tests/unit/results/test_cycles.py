@@ -49,28 +49,28 @@ def write_scene(folder: Path, scene: object) -> None:
 
 
 def test_a_spring_has_its_stiffness_in_every_cycle(folder: Path) -> None:
-    found = secant_stiffness(Run(folder), [0.0, 5.0, 20.0])
-    assert found.k.shape == (3, 3), "half a cycle is none"
-    np.testing.assert_allclose(found.k, np.outer(np.ones(3), [STIFFNESS, 0.875 * STIFFNESS, 0.5 * STIFFNESS]))
-    np.testing.assert_allclose(found.over_su, found.k / SU)
-    np.testing.assert_allclose(found.height[:, 0], 2.0 * np.array(HEAVE))
-    np.testing.assert_allclose(found.end, PERIOD * np.arange(1, 4))
+    stiffness = secant_stiffness(Run(folder), [0.0, 5.0, 20.0])
+    assert stiffness.k.shape == (3, 3), "half a cycle is none"
+    np.testing.assert_allclose(stiffness.k, np.outer(np.ones(3), [STIFFNESS, 0.875 * STIFFNESS, 0.5 * STIFFNESS]))
+    np.testing.assert_allclose(stiffness.over_su, stiffness.k / SU)
+    np.testing.assert_allclose(stiffness.height[:, 0], 2.0 * np.array(HEAVE))
+    np.testing.assert_allclose(stiffness.end, PERIOD * np.arange(1, 4))
 
 
 def test_a_riser_that_stays_or_floats_has_none(folder: Path) -> None:
     with h5py.File(folder / "results.nc", "a") as file:
         file["contact_force"][:, 0] = 0.0
         file["position"][:, 1, 2] = 0.15
-    found = secant_stiffness(Run(folder), [0.0, 10.0, 20.0])
-    assert np.isnan(found.k[:, :2]).all()
-    assert not np.isnan(found.k[:, 2]).any()
+    stiffness = secant_stiffness(Run(folder), [0.0, 10.0, 20.0])
+    assert np.isnan(stiffness.k[:, :2]).all()
+    assert not np.isnan(stiffness.k[:, 2]).any()
 
 
 def test_ground_without_strength_and_another_period(folder: Path) -> None:
     write_scene(folder, SCENE | {"soil": None, "seabed": {"kind": "spring", "stiffness": 1.0e5}})
-    found = secant_stiffness(Run(folder), [0.0], stage="heave", period=2.0 * PERIOD)
-    assert found.height[:, 0] == pytest.approx([2.0 * max(HEAVE)])
-    assert np.isnan(found.over_su).all()
+    stiffness = secant_stiffness(Run(folder), [0.0], stage="heave", period=2.0 * PERIOD)
+    assert stiffness.height[:, 0] == pytest.approx([2.0 * max(HEAVE)])
+    assert np.isnan(stiffness.over_su).all()
 
 
 def test_strength_is_that_of_the_surface(folder: Path) -> None:

@@ -38,8 +38,8 @@ def test_along_the_chord() -> None:
 
 def test_reactions_pull_the_riser_taut(tmp_path: Path) -> None:
     record(tmp_path)
-    found = reactions(Run(tmp_path))
+    forces = reactions(Run(tmp_path))
     line = Catenary(32.0, 30.0)
-    assert found.H1[0] == pytest.approx(WEIGHT * line.a)
-    assert found.H2[0] == pytest.approx(WEIGHT * line.a)
-    assert [found.V1[0], found.V2[0]] == pytest.approx([0.0, WEIGHT * (148.0 - line.s0)])
+    assert forces.H1[0] == pytest.approx(WEIGHT * line.a)
+    assert forces.H2[0] == pytest.approx(WEIGHT * line.a)
+    assert [forces.V1[0], forces.V2[0]] == pytest.approx([0.0, WEIGHT * (148.0 - line.s0)])

@@ -69,13 +69,13 @@ def test_linear_motion_leaves_no_residual(scheme: Scheme) -> None:
 
 def test_newmark_dissipates_as_hughes_says() -> None:
     """d(v.M v + u.K u)/2 + b dt²/2 d(a.M a) = -(g - 1/2) (du.K du + b dt² da.M da) in a step, b = beta - gamma/2."""
-    dt, seen = 0.1, swing(DAMPED, dt=0.1)
+    dt, energies = 0.1, swing(DAMPED, dt=0.1)
     M = Inertia(Chain(np.arange(4.0)), 1.0).nodal()
     b, g = DAMPED.beta - 0.5 * DAMPED.gamma, DAMPED.gamma - 0.5
-    du, da, a2 = np.diff(seen.z, axis=0), np.diff(seen.a, axis=0), seen.a**2 @ M
+    du, da, a2 = np.diff(energies.z, axis=0), np.diff(energies.a, axis=0), energies.a**2 @ M
     K = 20.0 * np.sum(np.diff(du, axis=1) ** 2, axis=1)
     lost = g * (K + b * dt**2 * da**2 @ M) + 0.5 * b * dt**2 * np.diff(a2)
-    assert seen.ledgers[-1].numerical == pytest.approx(lost.sum(), rel=1e-10)
+    assert energies.ledgers[-1].numerical == pytest.approx(lost.sum(), rel=1e-10)
 
 
 @pytest.mark.parametrize("scheme", [ALPHA, AVERAGE])

@@ -21,8 +21,8 @@ def followed(*batches: slice) -> HungExtremes:
 
 
 def test_extremes_and_the_end_are_nested_by_path_and_nan_does_not_count() -> None:
-    found = followed(slice(None)).nested
-    position, force = found["buoy"]["position"], found["joints"]["top"]["force"]
+    nested = followed(slice(None)).nested
+    position, force = nested["buoy"]["position"], nested["joints"]["top"]["force"]
     assert position["final"] == [2.0, 2.0, -3.0]
     assert (position["min"], position["t_min"]) == ([0.0, 0.0, -4.0], [0.0, 1.0, 1.0])
     assert (position["max"], position["t_max"]) == ([3.0, 2.0, -1.0], [0.5, 1.5, 0.5])

@@ -11,7 +11,7 @@ from riser_soil.riser.wall_stress import Wall, wall_sections
 from tests.support.recorded_run import Catenary, stacked
 
 ARC = np.linspace(0.0, 150.0, 31)
-SEEN = [Catenary(a, 60.0 - a).seen(ARC) for a in (30.0, 34.0, 31.0)]
+SEEN = [Catenary(a, 60.0 - a).record(ARC) for a in (30.0, 34.0, 31.0)]
 
 
 def test_views_are_of_the_vector_and_of_each_row() -> None:
@@ -26,10 +26,10 @@ def test_views_are_of_the_vector_and_of_each_row() -> None:
 
 @pytest.mark.parametrize("n", range(3))
 def test_one_of_many_is_itself(n: int) -> None:
-    found = stacked(SEEN).at(n)
-    assert list(found) == list(SEEN[n])
+    one = stacked(SEEN).at(n)
+    assert list(one) == list(SEEN[n])
     for name, expected in SEEN[n].items():
-        np.testing.assert_array_equal(found[name], expected)
+        np.testing.assert_array_equal(one[name], expected)
 
 
 def test_figures_of_many_are_those_of_each() -> None:
@@ -47,8 +47,8 @@ def test_walls_of_many_are_those_of_each() -> None:
     wall = Wall(np.array([0.30, 0.28]), np.array([0.20, 0.25]))
     sections = wall_sections(wall, np.zeros(2), np.ones((2, 2)))
     stress = np.array([[1.0, 2.0, 5.0, 6.0], [1.0, 5.0, 2.0, 6.0]])
-    found = sections.at_nodes(-stress, stress, 3)
-    assert found.tolist() == [sections.at_nodes(-row, row, 3).tolist() for row in stress] == 2 * [[-1.0, -5.0, -6.0]]
+    walls = sections.at_nodes(-stress, stress, 3)
+    assert walls.tolist() == [sections.at_nodes(-row, row, 3).tolist() for row in stress] == 2 * [[-1.0, -5.0, -6.0]]
 
 
 def test_what_is_not_known_is_not_there() -> None:

@@ -45,7 +45,7 @@ def test_xarray_reads_what_was_recorded(tmp_path: Path) -> None:
     data = xr.open_dataset(tmp_path / "run" / "results.nc", engine="h5netcdf")
     assert dict(data.sizes) == {"time": 11, "step": 12, "arc": arc.size, "component": 3, "section": 1, "offset": 5}
     np.testing.assert_allclose(data["time"], 0.1 * np.arange(11), atol=1e-12)
-    first = Catenary(32.0, 30.0).seen(arc)
+    first = Catenary(32.0, 30.0).record(arc)
     np.testing.assert_array_equal(data["position"].sel(time=0.0), first.position)
     np.testing.assert_array_equal(data["effective_tension"][0], first.effective_tension)
     np.testing.assert_array_equal(data["end_force"][0], first.end_force)
@@ -197,7 +197,7 @@ def _shape(made: h5py.Dataset) -> tuple[object, ...]:
 
 
 def _attributes(made: h5py.Dataset) -> dict[str, object]:
-    found = {name: np.asarray(value).tolist() for name, value in made.attrs.items() if not name.endswith("_LIST")}
+    attributes = {name: np.asarray(value).tolist() for name, value in made.attrs.items() if not name.endswith("_LIST")}
     scales = [made.file[refs[0]].name for refs in made.attrs.get("DIMENSION_LIST", ())]
     users = sorted((made.file[ref].name, int(axis)) for ref, axis in made.attrs.get("REFERENCE_LIST", ()))
-    return found | {"scales": scales, "users": users}
+    return attributes | {"scales": scales, "users": users}

@@ -35,9 +35,9 @@ def test_peak_at_an_end_stays_there() -> None:
     assert least_between_nodes(np.array([0.0, 1.0, 2.0]), np.array([0.0, 2.0, 3.0])) == 0.0
 
 
-def seen(t: float) -> Record:
+def record_at(t: float) -> Record:
     """Catenary whose largest moment grows and falls with time."""
-    record = Catenary(32.0, 30.0).seen(ARC)
+    record = Catenary(32.0, 30.0).record(ARC)
     return record.with_values(largest_moment=record.largest_moment * np.cos(t))
 
 
@@ -45,7 +45,7 @@ def test_only_what_sits_between_nodes_is_replaced() -> None:
     """Of the figures, the least tension alone is told at nodes."""
     tension = (ARC - 67.0) ** 2
     at_node = {"least_tension": tension.min(), "least_tension_arc": ARC[tension.argmin()]}
-    least = seen(0.0).with_values(effective_tension=tension, **at_node)
+    least = record_at(0.0).with_values(effective_tension=tension, **at_node)
     many = stacked([least])
     plain, (peaked,) = pack(least), with_least_between_nodes(many, pack(many))
     changed = np.flatnonzero(~np.isclose(plain, peaked, equal_nan=True))
@@ -59,13 +59,13 @@ def test_extremes_of_a_stage_three_ways() -> None:
     peaks = RunPeaks()
     peaks.begin_stage("motion", "dynamic")
     for t in np.arange(-1.0, 1.0, 0.3).tolist():
-        peaks.record([t], {"": stacked([seen(t)])})
+        peaks.record([t], {"": stacked([record_at(t)])})
     largest = {
         which: peaks.as_summary(which)["stages"][0]["extremes"]["max_bending_moment"]["max"]
         for which in ("sampled", "of_nodes", "peaks")
     }
-    top = pack(seen(0.0))[places_of("max_bending_moment")].item()
-    assert largest["sampled"] == pytest.approx(seen(0.1).largest_moment)
+    top = pack(record_at(0.0))[places_of("max_bending_moment")].item()
+    assert largest["sampled"] == pytest.approx(record_at(0.1).largest_moment)
     assert largest["of_nodes"] == pytest.approx(top * np.cos(0.1))
     assert largest["peaks"] == pytest.approx(top, rel=3e-4)
 
@@ -78,8 +78,8 @@ def test_a_motion_has_extremes_in_windows_of_its_time(steps: int) -> None:
     edges = 5.0 * np.cos(np.pi * np.arange(WINDOWS + 1) / 8.0)
     missed = 5.0 / 8.0 * (np.pi * 2.0 / steps) ** 2
     for which, extreme in (("max", np.maximum), ("min", np.minimum)):
-        found = stage.in_windows("max_bending_moment", which)
-        assert found == pytest.approx(extreme(edges[1:], edges[:-1]), abs=missed)
+        windows = stage.in_windows("max_bending_moment", which)
+        assert windows == pytest.approx(extreme(edges[1:], edges[:-1]), abs=missed)
     assert stage.in_windows("no figure", "max").size == 0
 
 
@@ -100,7 +100,7 @@ def followed(t: np.ndarray, moment: np.ndarray, duration: float = 1.0, kind: str
     """Peaks of a stage of a catenary whose largest moment is given at steps t."""
     peaks = RunPeaks()
     peaks.begin_stage("motion", kind, duration)
-    line = Catenary(32.0, 30.0).seen(ARC)
+    line = Catenary(32.0, 30.0).record(ARC)
     of_steps = [line.with_values(largest_moment=size, largest_moment_arc=ARC[0]) for size in moment]
     peaks.record(as_list(t), {"": stacked(of_steps)})
     return peaks
@@ -108,8 +108,8 @@ def followed(t: np.ndarray, moment: np.ndarray, duration: float = 1.0, kind: str
 
 def of_five(t: np.ndarray, moment: np.ndarray) -> float:
     """The largest moment of a stage without what rings; moment: at steps t."""
-    reported = followed(t, moment).as_summary("smooth")
-    largest: float = reported["stages"][0]["extremes"]["max_bending_moment"]["max"]
+    summary = followed(t, moment).as_summary("smooth")
+    largest: float = summary["stages"][0]["extremes"]["max_bending_moment"]["max"]
     return largest
 
 

@@ -53,7 +53,7 @@ def test_a_free_end_on_the_ground_has_no_reaction(tmp_path: Path) -> None:
         "stages": [{"name": "settle", "kind": "dynamic", "duration": 0.5, "time_step": 0.05, "scheme": NEWMARK}],
     }
     run(scene_from_mapping(scene), tmp_path)
-    found = Run(tmp_path)
-    contact = np.abs(found["contact_force_sum"]).max()
+    results = Run(tmp_path)
+    contact = np.abs(results["contact_force_sum"]).max()
     for name in ("start_force", "end_force", "start_moment", "end_moment"):
-        assert np.abs(found[name]).max() < 1e-3 * contact
+        assert np.abs(results[name]).max() < 1e-3 * contact

@@ -229,8 +229,8 @@ def test_what_is_reported_of_how_far_a_run_came(tmp_path: Path) -> None:
     with a_recorder(tmp_path) as recorder:
         assert recorder.reached == f"before the first step; {tmp_path} holds no results yet"
         step(recorder, 0.25)
-        reported = f"in stage only at t = 0.25 s; {tmp_path} has the results up to there, marked unfinished"
-        assert recorder.reached == reported
+        message = f"in stage only at t = 0.25 s; {tmp_path} has the results up to there, marked unfinished"
+        assert recorder.reached == message
         recorder.finish()
         assert recorder.reached == f"after the last stage; {tmp_path} has the whole run"
 
@@ -250,15 +250,15 @@ def test_many_steps_at_once_are_recorded_as_one_by_one(tmp_path: Path, interval:
 
 def numbers_in(path: Path) -> dict[str, Any]:
     """All datasets of an HDF5 file."""
-    found: dict[str, Any] = {}
+    numbers: dict[str, Any] = {}
     with h5py.File(path) as file:
-        file.visititems(lambda name, at: found.update({name: at[...]} if isinstance(at, h5py.Dataset) else {}))
-    return found
+        file.visititems(lambda name, at: numbers.update({name: at[...]} if isinstance(at, h5py.Dataset) else {}))
+    return numbers
 
 
 def test_a_run_that_begins_in_motion_is_recorded_from_its_beginning(tmp_path: Path) -> None:
     with a_recorder(tmp_path) as recorder:
-        recorder.begin_at({"": stacked([Catenary(32.0, 35.0).seen(CATENARY_ARC)])})
+        recorder.begin_at({"": stacked([Catenary(32.0, 35.0).record(CATENARY_ARC)])})
         step(recorder, 0.1)
         recorder.finish()
     run = Run(tmp_path)
@@ -274,8 +274,8 @@ def test_a_disk_that_is_full_ends_the_run_in_one_line(tmp_path: Path) -> None:
     step(recorder, 0.1)
     recorder.flush()
     step(recorder, 0.2)
-    told = telling("cannot be written:", "File too large", "make room")
-    with files_of_at_most(100_000), pytest.raises(WriteError, match=told):
+    message = telling("cannot be written:", "File too large", "make room")
+    with files_of_at_most(100_000), pytest.raises(WriteError, match=message):
         recorder.flush()
     recorder.close()
     assert Run(tmp_path).time.tolist() == [0.1]
@@ -364,8 +364,8 @@ def test_top_tension_is_the_upper_ends(upper: str, tmp_path: Path) -> None:
     for tension, end in enumerate(("start", "end"), start=1):
         final = summary["stages"][0]["final"][end]
         final["effective_tension"], final["position"][2] = 1e3 * tension, float(end == upper)
-    (reported,) = (line for line in shown(summary).splitlines() if "top tension" in line)
-    assert f" {1 if upper == 'start' else 2} kN" in reported
+    (row,) = (line for line in shown(summary).splitlines() if "top tension" in line)
+    assert f" {1 if upper == 'start' else 2} kN" in row
 
 
 def shown(summary: dict[str, Any]) -> str:

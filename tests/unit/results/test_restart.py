@@ -68,17 +68,17 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> Alone:
 
 def test_a_run_left_twice_ends_as_if_it_had_not_been_left(alone: Alone, tmp_path: Path) -> None:
     """Files, extremes, ledger; peaks, which error bars are told of."""
-    left, peaks = tmp_path / "left", RunPeaks()
+    folder, peaks = tmp_path / "left", RunPeaks()
     assert not (alone.folder / "checkpoint.npz").exists()
-    end = leave_after(3, scene_of(), left, RunPeaks())
+    end = leave_after(3, scene_of(), folder, RunPeaks())
     assert re.match(r"in stage heave[^;]*=\s\d", end.place)
-    assert end.place.endswith(f"riser-soil run {left}/scene.yaml -o {left} --restart")
-    assert len(unlike(alone.folder, left)) > 10, "otherwise nothing is compared"
-    leave_after(2, read_scene(left / "scene.yaml"), left, RunPeaks(), restart=True)
-    run(scene_of(), left, peaks=peaks, restart=True)
-    assert unlike(alone.folder, left) == []
+    assert end.place.endswith(f"riser-soil run {folder}/scene.yaml -o {folder} --restart")
+    assert len(unlike(alone.folder, folder)) > 10, "otherwise nothing is compared"
+    leave_after(2, read_scene(folder / "scene.yaml"), folder, RunPeaks(), restart=True)
+    run(scene_of(), folder, peaks=peaks, restart=True)
+    assert unlike(alone.folder, folder) == []
     assert json.dumps(peaks.as_summary("smooth")) == json.dumps(alone.peaks.as_summary("smooth"))
-    assert not (left / "checkpoint.npz").exists()
+    assert not (folder / "checkpoint.npz").exists()
 
 
 def test_a_run_begins_with_another_ones_end(tmp_path: Path) -> None:
@@ -126,7 +126,7 @@ def left_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def left(left_once: Path, tmp_path: Path) -> Path:
+def left_run(left_once: Path, tmp_path: Path) -> Path:
     """A run that was left on its way."""
     return Path(copytree(left_once, tmp_path / "left"))
 
@@ -140,9 +140,9 @@ def checkpoint(tmp_path: Path) -> Path:
 
 
 def test_a_checkpoint_holds_what_was_written(checkpoint: Path) -> None:
-    found = read_checkpoint(checkpoint)
-    assert found.about.ranks == 1
-    np.testing.assert_array_equal(found.shares[0]["stepper/before/u"], np.arange(3.0))
+    saved = read_checkpoint(checkpoint)
+    assert saved.about.ranks == 1
+    np.testing.assert_array_equal(saved.shares[0]["stepper/before/u"], np.arange(3.0))
     assert sorted(path.name for path in checkpoint.parent.iterdir()) == [".riser_soil", "checkpoint.npz"]
 
 
@@ -161,17 +161,17 @@ def test_a_checkpoint_of_another_scene_is_refused(override: str, checkpoint: Pat
     assert checkpoint.exists()
 
 
-def test_a_run_that_can_go_on_is_not_overwritten_by_mistake(left: Path) -> None:
-    before = {path.name: path.read_bytes() for path in left.iterdir()}
-    choice = f"{left}:", "unfinished run", "--restart", "--force"
+def test_a_run_that_can_go_on_is_not_overwritten_by_mistake(left_run: Path) -> None:
+    before = {path.name: path.read_bytes() for path in left_run.iterdir()}
+    choice = f"{left_run}:", "unfinished run", "--restart", "--force"
     with pytest.raises(SceneError, match=telling(*choice)):
-        run(scene_of(), left)
-    by_command = CliRunner().invoke(app, ["run", str(left / "scene.yaml"), "-o", str(left)])
+        run(scene_of(), left_run)
+    by_command = CliRunner().invoke(app, ["run", str(left_run / "scene.yaml"), "-o", str(left_run)])
     assert by_command.exit_code == 2
     line_with(by_command.stderr, *choice)
-    assert {path.name: path.read_bytes() for path in left.iterdir()} == before
-    run(scene_of(), left, force=True)
-    assert run_folder.is_finished(left)
+    assert {path.name: path.read_bytes() for path in left_run.iterdir()} == before
+    run(scene_of(), left_run, force=True)
+    assert run_folder.is_finished(left_run)
 
 
 @pytest.mark.parametrize(
@@ -206,53 +206,53 @@ def test_error_bars_can_not_begin_on_the_way(checkpoint: Path) -> None:
         run(scene_of(), checkpoint.parent, peaks=RunPeaks(), restart=True)
 
 
-def test_results_that_lack_what_they_had_are_refused(left: Path) -> None:
+def test_results_that_lack_what_they_had_are_refused(left_run: Path) -> None:
     """As another run's files that somebody has put beside the checkpoint."""
-    leave_after(1, scene_of(), left / "shorter")
-    (left / "shorter" / "results.nc").replace(left / "results.nc")
+    leave_after(1, scene_of(), left_run / "shorter")
+    (left_run / "shorter" / "results.nc").replace(left_run / "results.nc")
     with pytest.raises(ResultsError, match=telling("results.nc:", "lacks records")):
-        run(scene_of(), left, restart=True)
+        run(scene_of(), left_run, restart=True)
 
 
 @pytest.mark.parametrize("name", ["results.nc", "riser.vtkhdf", "riser.xdmf"])
-def test_a_run_whose_file_has_gone_is_refused(name: str, left: Path) -> None:
-    (left / name).unlink()
+def test_a_run_whose_file_has_gone_is_refused(name: str, left_run: Path) -> None:
+    (left_run / name).unlink()
     with pytest.raises(ResultsError, match=telling(f"{name}:", "lacks records", "begin anew")):
-        run(scene_of(), left, restart=True)
+        run(scene_of(), left_run, restart=True)
 
 
-def test_xml_that_is_cut_off_is_refused(left: Path) -> None:
+def test_xml_that_is_cut_off_is_refused(left_run: Path) -> None:
     """Its last frame is begun and has no end: what followed would stand within it."""
-    content = (left / "riser.xdmf").read_bytes()
-    (left / "riser.xdmf").write_bytes(content[: content.rindex(b"<Grid Name") + 30])
+    content = (left_run / "riser.xdmf").read_bytes()
+    (left_run / "riser.xdmf").write_bytes(content[: content.rindex(b"<Grid Name") + 30])
     with pytest.raises(ResultsError, match=r"riser\.xdmf: lacks records"):
-        run(scene_of(), left, restart=True)
+        run(scene_of(), left_run, restart=True)
 
 
 @pytest.mark.parametrize("name", ["results.nc", "riser.vtkhdf"])
-def test_a_run_with_a_damaged_file_is_refused(name: str, left: Path) -> None:
+def test_a_run_with_a_damaged_file_is_refused(name: str, left_run: Path) -> None:
     """Its head is whole, so that it is taken for its writer's; what its groups hold can't be read."""
-    content = (left / name).read_bytes()
-    (left / name).write_bytes(content.replace(b"TREE", b"EERT"))
+    content = (left_run / name).read_bytes()
+    (left_run / name).write_bytes(content.replace(b"TREE", b"EERT"))
     with pytest.raises(ResultsError, match=telling(f"{name}:", "damaged", "begin anew", "--force")):
-        run(scene_of(), left, restart=True)
+        run(scene_of(), left_run, restart=True)
 
 
-def test_a_run_that_is_ended_before_it_went_on_stays_as_it_was(left: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    before = {path.name: path.read_bytes() for path in left.iterdir()}
+def test_a_run_that_is_ended_before_it_went_on_stays_as_it_was(left_run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = {path.name: path.read_bytes() for path in left_run.iterdir()}
     monkeypatch.setattr(Assembly, "resume", lambda self: signal.raise_signal(signal.SIGTERM))
     with pytest.raises(Interruption) as end:
-        run(scene_of(), left, restart=True)
-    line_with(str(end.value), "SIGTERM", "before it went on", f"{left} is as it was", "riser-soil")
-    assert {path.name: path.read_bytes() for path in left.iterdir()} == before
+        run(scene_of(), left_run, restart=True)
+    line_with(str(end.value), "SIGTERM", "before it went on", f"{left_run} is as it was", "riser-soil")
+    assert {path.name: path.read_bytes() for path in left_run.iterdir()} == before
 
 
 def test_a_file_that_changes_while_the_run_lasts_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The checkpoint is of the file that the run has read."""
     way, usual = tmp_path / "way.csv", Observer.begin_stage
 
-    def begin_stage(self: Observer, *reported: Any) -> None:
-        usual(self, *reported)
+    def begin_stage(self: Observer, *arguments: Any) -> None:
+        usual(self, *arguments)
         way.write_text(WAY.format("0.2"), encoding="utf-8")
 
     way.write_text(WAY.format("0.1"), encoding="utf-8")
@@ -267,12 +267,12 @@ def test_a_file_that_changes_while_the_run_lasts_is_found(tmp_path: Path, monkey
 def test_a_full_disk_leaves_the_last_checkpoint(alone: Alone, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     often, usual, written = scene_of("output.checkpoint.every=1e-6"), record.write_checkpoint, 0
 
-    def full(*reported: Any) -> None:
+    def full(*arguments: Any) -> None:
         nonlocal written
         written += 1
         if written == 3:
             raise OSError(28, "No space left on device")
-        usual(*reported)
+        usual(*arguments)
 
     with monkeypatch.context() as patch:
         patch.setattr(record, "write_checkpoint", full)
@@ -306,6 +306,6 @@ def test_checkpoints_are_due_by_time_at_ends_and_where_the_run_is_left() -> None
 
 
 def test_one_either_goes_on_or_overwrites() -> None:
-    reported = CliRunner().invoke(app, ["run", str(ROOT / "demos/first_scene.yaml"), "--restart", "--force"])
-    assert reported.exit_code == 2
-    assert reported.stderr == line_with(reported.stderr, "--restart and --force:", "leave one out") + "\n"
+    result = CliRunner().invoke(app, ["run", str(ROOT / "demos/first_scene.yaml"), "--restart", "--force"])
+    assert result.exit_code == 2
+    assert result.stderr == line_with(result.stderr, "--restart and --force:", "leave one out") + "\n"

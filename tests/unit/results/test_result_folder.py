@@ -100,9 +100,9 @@ def test_the_seal_is_a_comment() -> None:
 def test_a_second_run_is_refused_while_the_first_writes(force: bool, tmp_path: Path) -> None:
     with a_recorder(tmp_path) as recorder:
         step(recorder, 0.1)
-        reported = rf"another run \(process {os.getpid()} on .*\) is writing there; wait for its end, or choose another"
+        message = rf"another run \(process {os.getpid()} on .*\) is writing there; wait for its end, or choose another"
         for attempt in (refuse, prepare):
-            with pytest.raises(SceneError, match=reported):
+            with pytest.raises(SceneError, match=message):
                 attempt(tmp_path, force)
         step(recorder, 0.2)
         recorder.finish()

@@ -29,26 +29,26 @@ def test_the_largest_is_kept_with_its_place_and_time() -> None:
     first = soil(MESH, 30.0)
     cell = 7
     later = replace(first, strength_used=np.where(np.arange(len(MESH.cells)) == cell, 1.5, 0.0))
-    found = followed(first, later, first)
+    largest = followed(first, later, first)
     centre = MESH.points[MESH.cells[cell]].mean(axis=0).tolist()
-    assert found["max_strength_used"] == {"value": 1.5, "position": centre, "time": 0.2}
-    assert found["max_von_mises_stress"]["value"] == first.von_mises.max()
-    assert found["max_von_mises_stress"]["time"] == 0.1, "the same again is nothing new"
+    assert largest["max_strength_used"] == {"value": 1.5, "position": centre, "time": 0.2}
+    assert largest["max_von_mises_stress"]["value"] == first.von_mises.max()
+    assert largest["max_von_mises_stress"]["time"] == 0.1, "the same again is nothing new"
     sunk = -first.displacement[:, 2]
     deepest = MESH.points[sunk >= (1.0 - 1e-6) * sunk.max()]
-    assert found["max_settlement"]["position"] == deepest[0].tolist()
+    assert largest["max_settlement"]["position"] == deepest[0].tolist()
     assert len(deepest) == 4, "on either side of the riser, and along it"
 
 
 def test_round_off_does_not_choose_among_places() -> None:
     first = soil(MESH, 30.0)
-    found = []
+    largest = []
     for seed in range(8):
         noise = 1.0 + 1e-12 * np.random.default_rng(seed).normal(size=len(MESH.cells))
-        seen = replace(first, strength_used=first.strength_used * noise)
-        found += [followed(first, seen), followed(seen)]
-    assert len({tuple(each["max_strength_used"]["position"]) for each in found}) == 1
-    assert {each["max_strength_used"]["time"] for each in found} == {0.1}
+        noisy = replace(first, strength_used=first.strength_used * noise)
+        largest += [followed(first, noisy), followed(noisy)]
+    assert len({tuple(each["max_strength_used"]["position"]) for each in largest}) == 1
+    assert {each["max_strength_used"]["time"] for each in largest} == {0.1}
 
 
 def test_the_summary_has_them_for_each_stage(tmp_path: Path) -> None:

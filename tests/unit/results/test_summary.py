@@ -60,7 +60,7 @@ def strictly(text: str) -> Any:
 
 
 def test_final_state_of_a_catenary() -> None:
-    final = final_state(pack(LINE.seen(ARC)))
+    final = final_state(pack(LINE.record(ARC)))
     assert set(final) == {"start", "end", PLACE} | WHOLE
     assert set(final["start"]) == set(final["end"]) == END
     assert final["start"]["force"] == pytest.approx([-WEIGHT * 32.0, 0.0, 0.0])
@@ -83,18 +83,18 @@ def test_final_state_of_a_catenary() -> None:
 def test_what_is_unknown_is_left_out() -> None:
     sometimes: tuple[str, ...] = ("wall_tension", "largest_bend_utilisation", "tension_utilisation", "embedment")
     sometimes += ("wall_von_mises_stress", "stress_utilisation", *(name.removeprefix("max_") for name in CODE))
-    record = LINE.seen(ARC).with_values(**dict.fromkeys(sometimes))
+    record = LINE.record(ARC).with_values(**dict.fromkeys(sometimes))
     extremes = Extremes()
     extremes.update(0.0, pack(record))
     unknown = {"min_wall_tension", "max_wall_tension", "max_bend_utilisation", "max_embedment"}
     unknown |= {"max_tension_utilisation", "max_wall_von_mises_stress", "max_stress_utilisation", *CODE}
-    for found in (final_state(pack(record)), extremes.nested()):
-        assert set(found) == {"start", "end", PLACE} | WHOLE - unknown
+    for nested in (final_state(pack(record)), extremes.nested()):
+        assert set(nested) == {"start", "end", PLACE} | WHOLE - unknown
 
 
 def test_a_straight_pipe_has_no_bend_radius() -> None:
     straight = dict.fromkeys(("largest_curvature", "largest_curvature_arc"), np.zeros(()))
-    final = final_state(pack(LINE.seen(ARC).with_values(**straight)))
+    final = final_state(pack(LINE.record(ARC).with_values(**straight)))
     assert plain_json(final)["min_bend_radius"] == {"value": None, "arc": 0.0}
 
 
@@ -108,7 +108,7 @@ def test_a_pipe_bent_too_much_is_a_warning() -> None:
 def bent(a: float) -> Record:
     """A catenary of this parameter [m], whose pipe may be bent to 20 m; weak in nothing else."""
     others = dict.fromkeys(("tension_utilisation", "stress_utilisation"))
-    return Catenary(a, 30.0).seen(ARC).with_values(**others)
+    return Catenary(a, 30.0).record(ARC).with_values(**others)
 
 
 def exceeded(*records: Record) -> list[str]:
@@ -145,7 +145,7 @@ def test_angle_from_the_horizontal(tangent: tuple[float, ...], angle: float) -> 
 def test_extremes_know_when() -> None:
     extremes = Extremes()
     for t, a in ((0.0, 32.0), (0.1, 35.0), (0.2, 30.0)):
-        extremes.update(t, pack(Catenary(a, 30.0).seen(ARC)))
+        extremes.update(t, pack(Catenary(a, 30.0).record(ARC)))
     nested = extremes.nested()
     assert nested["end"]["force"]["max"][0] == pytest.approx(WEIGHT * 35.0)
     assert nested["end"]["force"]["t_max"][0] == 0.1
@@ -164,16 +164,16 @@ def test_extremes_know_when() -> None:
 def test_extremes_know_where() -> None:
     extremes = Extremes()
     for t, (a, s0) in enumerate([(32.0, 30.0), (35.0, 40.0), (30.0, 20.0)]):
-        extremes.update(t, pack(Catenary(a, s0).seen(ARC)))
-    found = extremes.nested()
-    assert (found["max_bending_moment"]["arc_min"], found["max_bending_moment"]["arc_max"]) == (40.0, 20.0)
-    assert {"arc_min", "arc_max"} <= found["min_effective_tension"].keys()
-    assert "arc_max" not in found["contact_force"] | found["end"]["force"]
+        extremes.update(t, pack(Catenary(a, s0).record(ARC)))
+    nested = extremes.nested()
+    assert (nested["max_bending_moment"]["arc_min"], nested["max_bending_moment"]["arc_max"]) == (40.0, 20.0)
+    assert {"arc_min", "arc_max"} <= nested["min_effective_tension"].keys()
+    assert "arc_max" not in nested["contact_force"] | nested["end"]["force"]
 
 
 def test_extremes_mirror_the_final_state() -> None:
     extremes = Extremes()
-    extremes.update(0.0, pack(LINE.seen(ARC)))
+    extremes.update(0.0, pack(LINE.record(ARC)))
     nested = extremes.nested()
     assert set(nested) == {"start", "end", PLACE} | WHOLE
     assert set(nested["start"]) == set(nested["end"]) == END
@@ -184,7 +184,7 @@ def test_extremes_mirror_the_final_state() -> None:
 def test_lifting_off_does_not_spoil_the_touchdown_extremes() -> None:
     extremes = Extremes()
     for t, arc in ((0.0, math.nan), (0.1, 20.0), (0.2, math.nan)):
-        extremes.update(t, pack(LINE.seen(ARC).with_values(touchdown_arc=np.array(arc))))
+        extremes.update(t, pack(LINE.record(ARC).with_values(touchdown_arc=np.array(arc))))
     assert extremes.nested()["touchdown_arc"] == {"min": 20.0, "max": 20.0, "t_min": 0.1, "t_max": 0.1}
 
 
@@ -203,7 +203,7 @@ def test_never_touching_is_null(tmp_path: Path) -> None:
 
 
 def test_a_packed_vector_has_the_figures_in_the_order_of_the_file_and_their_places_behind() -> None:
-    final = final_state(np.arange(float(pack(LINE.seen(ARC)).size)))
+    final = final_state(np.arange(float(pack(LINE.record(ARC)).size)))
     assert final["start"]["position"] == [0.0, 1.0, 2.0]
     assert final["end"]["angle_deg"] == 23.0
     assert final["touchdown_position"] == [25.0, 26.0, 27.0]
@@ -226,8 +226,8 @@ def test_structure_of_the_file(tmp_path: Path) -> None:
     facts = replace(FACTS, warnings=("elements are long",), versions={"python": "3.11.2"})
     record(tmp_path, duration=1.0, facts=facts)
     summary = strictly((tmp_path / "summary.json").read_text())
-    reported = {"title", "finished", "version", "versions", "warnings", "ranks", "parts", "dofs", "stages", "seconds"}
-    assert set(summary) == reported | {"processor_seconds"}
+    keys = {"title", "finished", "version", "versions", "warnings", "ranks", "parts", "dofs", "stages", "seconds"}
+    assert set(summary) == keys | {"processor_seconds"}
     assert (summary["warnings"], summary["versions"]) == (["elements are long"], {"python": "3.11.2"})
     assert summary["finished"] is True
     assert summary["parts"] == {

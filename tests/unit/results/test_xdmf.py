@@ -145,10 +145,10 @@ def test_vtkhdf_is_cut_back_and_goes_on(tmp_path: Path, count: int) -> None:
         assert vtkhdf.times(store).tolist() == [0.0, 1.0, 2.0]
         np.testing.assert_array_equal(vtkhdf.mesh(store)[1], cells)
         for time in (0, 1, 2):
-            found = vtkhdf.values_at(store, time)
-            by_itself = {name: store[vtkhdf.instant(name, f"{time:06d}")] for name in found}
+            frames = vtkhdf.values_at(store, time)
+            by_itself = {name: store[vtkhdf.instant(name, f"{time:06d}")] for name in frames}
             assert {each.is_virtual for name, each in by_itself.items() if name != "displacement"} == {count == 3000}
-            for values in (found, by_itself):
+            for values in (frames, by_itself):
                 np.testing.assert_array_equal(values["displacement"], points + time)
                 np.testing.assert_array_equal(values["stress"], number + time)
                 np.testing.assert_array_equal(values["p"], np.full(count, 3.0))

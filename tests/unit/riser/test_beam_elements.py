@@ -226,8 +226,8 @@ def test_strains_do_not_depend_on_the_frame_about_the_chord(seed: int, turn: flo
     strains = []
     for frames in (ends, about_chord @ ends):
         a, b = (corotation.split(matrix(A)).angles for A in frames)
-        found = strain3d.strain(1.0, 0.97, a, b, strain3d.stations(1.0, a, b))
-        strains.append([found.axial, found.twist, *found.first, *found.second])
+        strain = strain3d.strain(1.0, 0.97, a, b, strain3d.stations(1.0, a, b))
+        strains.append([strain.axial, strain.twist, *strain.first, *strain.second])
     assert np.abs(np.array(strains[0]) - strains[1]).max() < 1e-12
 
 

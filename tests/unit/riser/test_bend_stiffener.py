@@ -79,7 +79,7 @@ def test_it_weighs_its_volume_less_the_water() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "reported"),
+    ("change", "message"),
     [
         ({"base_diameter": 0.2}, "is less than tip_diameter"),
         ({"tip_diameter": 0.1}, r"tip_diameter.*is less than the pipe's \(0.2 m\)"),
@@ -87,8 +87,8 @@ def test_it_weighs_its_volume_less_the_water() -> None:
         ({"length": 0.5}, "has elements of 0.25 m on its 0.5 m: at least 4 are needed"),
     ],
 )
-def test_stiffeners_that_do_not_fit(change: Mapping, reported: str) -> None:
-    with pytest.raises(SceneError, match=reported):
+def test_stiffeners_that_do_not_fit(change: Mapping, message: str) -> None:
+    with pytest.raises(SceneError, match=message):
         scene_from_mapping(scene(taper=TAPER | change))
 
 

@@ -34,8 +34,8 @@ def test_top_of_a_parabola(place: float) -> None:
 
 def test_top_of_a_cubic() -> None:
     """x (1 - x) (2 - x): at 1 - 1/sqrt(3), 2/(3 sqrt(3)) high."""
-    found = np.array(top_of_cubic(*np.array([0.0, 0.0, 2.0, -1.0])))
-    assert found == pytest.approx([2.0 / 27.0**0.5, 1.0 - 1.0 / math.sqrt(3.0)])
+    top = np.array(top_of_cubic(*np.array([0.0, 0.0, 2.0, -1.0])))
+    assert top == pytest.approx([2.0 / 27.0**0.5, 1.0 - 1.0 / math.sqrt(3.0)])
 
 
 @pytest.mark.parametrize(("rise", "fall"), [(3.0, 3.0), (-3.0, 3.0), (-3.0, -3.0), (0.0, -1.0), (1.0, 0.0)])

@@ -21,16 +21,16 @@ ORIGIN = np.zeros(3)
 COUNTS = (250, 500, 1000)
 
 
-def vertical(found: Catenary) -> Array:
+def vertical(cable: Catenary) -> Array:
     """Vertical force at the nodes (nn,) N."""
-    return np.asarray(found.tension * np.append(found.curve.tangent[:, 0, 2], found.curve.tangent[-1, 1, 2]))
+    return np.asarray(cable.tension * np.append(cable.curve.tangent[:, 0, 2], cable.curve.tangent[-1, 1, 2]))
 
 
-def balance(found: Catenary, weight: float) -> float:
+def balance(cable: Catenary, weight: float) -> float:
     """Largest error of dT/ds = w z: the change of the vertical force between nodes, over the weight between
     them.
     """
-    return float(np.abs(np.diff(vertical(found)) - weight * np.diff(ARC)).max() / (weight * ARC[1]))
+    return float(np.abs(np.diff(vertical(cable)) - weight * np.diff(ARC)).max() / (weight * ARC[1]))
 
 
 def require_second_order(error: Callable[[int], float], finest: float) -> None:
@@ -62,26 +62,26 @@ def test_curvature_and_how_it_bends_are_derivatives_of_the_angle() -> None:
 
 
 def test_hanging_line_is_balanced() -> None:
-    found = catenary(ARC, ORIGIN, np.array([150.0, 0.0, 150.0]), W, STIFF)
-    assert found.curve.position[-1] == pytest.approx([150.0, 0.0, 150.0], abs=1e-9)
-    assert balance(found, W) < 1e-9
-    assert found.slack == 0.0
+    cable = catenary(ARC, ORIGIN, np.array([150.0, 0.0, 150.0]), W, STIFF)
+    assert cable.curve.position[-1] == pytest.approx([150.0, 0.0, 150.0], abs=1e-9)
+    assert balance(cable, W) < 1e-9
+    assert cable.slack == 0.0
 
 
 def test_ends_at_one_level_are_symmetric() -> None:
-    found = catenary(ARC, ORIGIN, np.array([0.0, 200.0, 0.0]), W, STIFF)
-    assert found.curve.position[1750, 1] == pytest.approx(100.0)
-    assert found.tension[0] == pytest.approx(found.tension[-1])
-    assert found.tension[0] == pytest.approx(np.hypot(found.H, 0.5 * W * 350.0))
+    cable = catenary(ARC, ORIGIN, np.array([0.0, 200.0, 0.0]), W, STIFF)
+    assert cable.curve.position[1750, 1] == pytest.approx(100.0)
+    assert cable.tension[0] == pytest.approx(cable.tension[-1])
+    assert cable.tension[0] == pytest.approx(np.hypot(cable.H, 0.5 * W * 350.0))
 
 
 def test_elastic_line_is_longer_by_its_tension() -> None:
     EA = 1.0e7
-    found = catenary(ARC, ORIGIN, np.array([150.0, 0.0, 150.0]), W, EA)
-    length = np.linalg.norm(found.curve.chord, axis=1)
-    strain = 0.5 * (found.tension[1:] + found.tension[:-1]) / EA
+    cable = catenary(ARC, ORIGIN, np.array([150.0, 0.0, 150.0]), W, EA)
+    length = np.linalg.norm(cable.curve.chord, axis=1)
+    strain = 0.5 * (cable.tension[1:] + cable.tension[:-1]) / EA
     assert length / np.diff(ARC) - 1.0 == pytest.approx(strain, rel=1e-3, abs=1e-7)
-    assert balance(found, W) < 1e-9
+    assert balance(cable, W) < 1e-9
 
 
 def test_resting_line_tends_to_the_closed_form() -> None:
@@ -94,12 +94,12 @@ def test_resting_line_tends_to_the_closed_form() -> None:
 
 def test_resting_line_lies_on_the_seabed() -> None:
     arc, end = np.linspace(0.0, 40.0, 401), np.array([30.0, 2.0, 15.15])
-    found = catenary(arc, np.array([1.0, 2.0, 0.15]), end, 147.1, 1.0e5, level=0.15)
-    assert found.curve.position[-1] == pytest.approx(end, abs=1e-9)
+    cable = catenary(arc, np.array([1.0, 2.0, 0.15]), end, 147.1, 1.0e5, level=0.15)
+    assert cable.curve.position[-1] == pytest.approx(end, abs=1e-9)
     resting = (arc > 0.0) & (arc < 10.0)
-    assert found.curve.position[resting, 2] == pytest.approx(0.15, abs=1e-5)
-    assert found.tension[resting] == pytest.approx(found.H, rel=1e-6)
-    assert np.linalg.norm(found.curve.chord[0]) / 0.1 - 1.0 == pytest.approx(found.H / 1.0e5, rel=1e-6)
+    assert cable.curve.position[resting, 2] == pytest.approx(0.15, abs=1e-5)
+    assert cable.tension[resting] == pytest.approx(cable.H, rel=1e-6)
+    assert np.linalg.norm(cable.curve.chord[0]) / 0.1 - 1.0 == pytest.approx(cable.H / 1.0e5, rel=1e-6)
 
 
 @pytest.mark.parametrize("moved", [0.1, 5.0, 120.0])
@@ -107,10 +107,10 @@ def test_it_is_found_from_one_nearby_and_from_one_far_away(moved: float) -> None
     """Both ends in other places, the lower one lifted off the seabed by as much."""
     start, end = np.array([0.0, 0.0, moved]), np.array([230.0 - moved, 0.0, 150.0 + moved])
     near = catenary(ARC, ORIGIN, np.array([230.0, 0.0, 150.0]), W, 1e8, 0.0)
-    found, alone = (catenary(ARC, start, end, W, 1e8, 0.0, near=known) for known in (near, None))
+    cable, alone = (catenary(ARC, start, end, W, 1e8, 0.0, near=known) for known in (near, None))
     assert abs(near.H / alone.H - 1.0) > 1e-4
-    assert abs(found.H / alone.H - 1.0) < 1e-5
-    assert np.abs(found.curve.position - alone.curve.position).max() < 1e-3
+    assert abs(cable.H / alone.H - 1.0) < 1e-5
+    assert np.abs(cable.curve.position - alone.curve.position).max() < 1e-3
 
 
 def test_a_line_that_clears_the_seabed_hangs() -> None:
@@ -123,19 +123,19 @@ def test_a_line_that_clears_the_seabed_hangs() -> None:
 def test_stretched_vertical_line() -> None:
     """Pulled up by 1 %: z(s) = s + (T0 s + w s^2/2)/EA."""
     EA, arc = 1.0e7, np.linspace(0.0, 100.0, 21)
-    found = catenary(arc, ORIGIN, np.array([0.0, 0.0, 101.0]), W, EA)
+    cable = catenary(arc, ORIGIN, np.array([0.0, 0.0, 101.0]), W, EA)
     T0 = 1.0 / 100.0 * EA - 0.5 * W * 100.0
-    assert found.curve.position[:, 2] == pytest.approx(arc + (T0 * arc + 0.5 * W * arc**2) / EA, abs=1e-5)
-    assert found.tension[[0, -1]] == pytest.approx([T0, T0 + 100.0 * W], rel=1e-5)
+    assert cable.curve.position[:, 2] == pytest.approx(arc + (T0 * arc + 0.5 * W * arc**2) / EA, abs=1e-5)
+    assert cable.tension[[0, -1]] == pytest.approx([T0, T0 + 100.0 * W], rel=1e-5)
 
 
 @pytest.mark.parametrize("end", [[99.999, 0.0, 0.0], [100.0, 0.0, 0.0], [100.5, 0.0, 0.0], [60.0, 0.0, 80.4]])
 def test_nearly_straight_and_stretched_lines(end: list[float]) -> None:
     EA, arc = 1.0e9, np.linspace(0.0, 100.0, 51)
-    found = catenary(arc, ORIGIN, np.array(end), W, EA)
-    assert found.curve.position[-1] == pytest.approx(end, abs=1e-9)
-    assert np.linalg.norm(found.curve.chord, axis=1).sum() / 100.0 - 1.0 == pytest.approx(
-        found.tension.mean() / EA, abs=2e-7
+    cable = catenary(arc, ORIGIN, np.array(end), W, EA)
+    assert cable.curve.position[-1] == pytest.approx(end, abs=1e-9)
+    assert np.linalg.norm(cable.curve.chord, axis=1).sum() / 100.0 - 1.0 == pytest.approx(
+        cable.tension.mean() / EA, abs=2e-7
     )
 
 
@@ -157,9 +157,9 @@ def joined(lengths: Array, weights: Array, EA: Array, loads: Array, end: Array, 
             V = end_V + load
         return np.asarray(place - end)
 
-    found, _, status, message = fsolve(misfit, [np.log(guess[0]), guess[1]], xtol=1e-13, full_output=True)
+    solution, _, status, message = fsolve(misfit, [np.log(guess[0]), guess[1]], xtol=1e-13, full_output=True)
     assert status == 1, message
-    return np.array([np.exp(found[0]), found[1]])
+    return np.array([np.exp(solution[0]), solution[1]])
 
 
 SEVERAL = {
@@ -176,20 +176,20 @@ def test_joined_pieces(kind: str) -> None:
     end, arc, count = np.array([100.0, 0.0, 50.0]), np.linspace(0.0, 150.0, 31), np.rint(lengths / 5.0).astype(int)
     points = np.stack([np.cumsum(lengths), loads], axis=1)[:-1]
 
-    def found(bars: int) -> Array:
+    def positions(bars: int) -> Array:
         line = catenary(arc, ORIGIN, end, np.repeat(weights, count), np.repeat(EA, count), points=points, bars=bars)
         return np.array([line.H, vertical(line)[0]])
 
-    exact = joined(lengths, weights, EA, loads, end[[0, 2]], found(2000))
-    require_second_order(lambda n: float(np.abs(found(n) - exact).max()) / np.abs(exact).max(), 2e-5)
+    exact = joined(lengths, weights, EA, loads, end[[0, 2]], positions(2000))
+    require_second_order(lambda n: float(np.abs(positions(n) - exact).max()) / np.abs(exact).max(), 2e-5)
 
 
 def test_buoyant_stretch_lifts_off_the_seabed_between_two_that_touch() -> None:
     """What the seabed bears and what the ends carry make up the weight."""
     arc, w = np.linspace(0.0, 400.0, 101), np.full(100, 300.0)
     w[40:50] = -400.0
-    found = catenary(arc, ORIGIN, np.array([300.0, 0.0, 90.0]), w, 1e9, level=0.0)
-    z = found.curve.position[:, 2]
+    cable = catenary(arc, ORIGIN, np.array([300.0, 0.0, 90.0]), w, 1e9, level=0.0)
+    z = cable.curve.position[:, 2]
     touching = z < 1e-3
     starts = np.flatnonzero(np.diff(touching.astype(int)) == 1)
     assert touching[0]
@@ -197,7 +197,7 @@ def test_buoyant_stretch_lifts_off_the_seabed_between_two_that_touch() -> None:
     assert z[40:50].max() > 5.0
     assert z.min() > -1e-3
     last = np.flatnonzero(touching)[-1]
-    assert vertical(found)[-1] - vertical(found)[last + 1] == pytest.approx((400.0 - arc[last + 1]) * 300.0, rel=1e-3)
+    assert vertical(cable)[-1] - vertical(cable)[last + 1] == pytest.approx((400.0 - arc[last + 1]) * 300.0, rel=1e-3)
 
 
 # Any line
@@ -208,10 +208,10 @@ def test_any_hanging_line_ends_where_it_should(h: float, v: float, heading: floa
     if np.hypot(h, v) > 345.0:
         return
     end = np.array([h * np.cos(heading), h * np.sin(heading), v])
-    found = catenary(ARC[::50], ORIGIN, end, W, W * 350.0 * 10.0**log_EA)
+    cable = catenary(ARC[::50], ORIGIN, end, W, W * 350.0 * 10.0**log_EA)
     normal = np.array([np.cos(heading), np.sin(heading), 0.0])
-    assert found.curve.position[-1] == pytest.approx(end + found.slack * normal, abs=1e-8)
-    assert found.slack == 0.0 or h < 5.0
+    assert cable.curve.position[-1] == pytest.approx(end + cable.slack * normal, abs=1e-8)
+    assert cable.slack == 0.0 or h < 5.0
 
 
 @given(
@@ -228,12 +228,12 @@ def test_any_line_finds_its_balance(
         return
     w, end = np.repeat(weights, 60 // len(weights)), 100.0 * distance * np.array([np.cos(slope), 0.0, np.sin(slope)])
     arc = np.linspace(0.0, 100.0, w.size + 1)
-    found = catenary(arc, ORIGIN, end, w, 10.0**log_EA, level, bars=500)
-    assert found.curve.position[-1] == pytest.approx(end + found.slack * X, abs=1e-7), "to 1e-9 of its length"
-    assert found.curve.position[:, 2].min() > level - 1e-3
-    assert np.linalg.norm(found.curve.tangent, axis=2) == pytest.approx(1.0)
-    scale = np.abs(w).mean() * 100.0 + found.tension.max()
-    borne = np.dot(w, np.diff(arc)) - np.diff(vertical(found)[[0, -1]])[0]
+    cable = catenary(arc, ORIGIN, end, w, 10.0**log_EA, level, bars=500)
+    assert cable.curve.position[-1] == pytest.approx(end + cable.slack * X, abs=1e-7), "to 1e-9 of its length"
+    assert cable.curve.position[:, 2].min() > level - 1e-3
+    assert np.linalg.norm(cable.curve.tangent, axis=2) == pytest.approx(1.0)
+    scale = np.abs(w).mean() * 100.0 + cable.tension.max()
+    borne = np.dot(w, np.diff(arc)) - np.diff(vertical(cable)[[0, -1]])[0]
     assert borne > -1e-6 * scale, "the seabed pushes, it never pulls"
     assert level > -np.inf or borne < 1e-6 * scale
 
@@ -241,12 +241,12 @@ def test_any_line_finds_its_balance(
 @pytest.mark.parametrize("end", [[0.0, 0.0, 0.0], [0.0, 0.0, 100.0], [3.0, 4.0, 20.0]])
 @pytest.mark.parametrize("level", [-np.inf, 0.0])
 def test_slack_line_is_laid_with_the_least_tension(end: list[float], level: float) -> None:
-    found = catenary(ARC[::50], ORIGIN, np.array(end), W, 1e9, level, least_H=10.0 * W)
-    assert pytest.approx(10.0 * W) == found.H
+    cable = catenary(ARC[::50], ORIGIN, np.array(end), W, 1e9, level, least_H=10.0 * W)
+    assert pytest.approx(10.0 * W) == cable.H
     normal = np.array([0.6, 0.8, 0.0]) if end[0] else np.array([1.0, 0.0, 0.0])
-    assert found.slack > 1.0
-    assert found.curve.position[-1] == pytest.approx(end + found.slack * normal, abs=1e-8)
-    assert np.linalg.norm(found.curve.chord, axis=1).sum() == pytest.approx(350.0, rel=2e-2)
+    assert cable.slack > 1.0
+    assert cable.curve.position[-1] == pytest.approx(end + cable.slack * normal, abs=1e-8)
+    assert np.linalg.norm(cable.curve.chord, axis=1).sum() == pytest.approx(350.0, rel=2e-2)
 
 
 @pytest.mark.parametrize(

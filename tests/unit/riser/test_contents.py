@@ -42,8 +42,8 @@ def stretches(t: float, *slugs: SlugTrain, **more: Any) -> list[tuple[float, flo
 def test_a_slug_passes_through() -> None:
     """It enters at the start, is cut off at the end, and is gone when all of it has left."""
     slug = SlugTrain(300.0, 3.0, front=-1.0)
-    found = {t: stretches(t, slug, speed=2.0) for t in (0.0, 0.5, 1.0, 4.0, 5.0, 6.0)}
-    assert found == {
+    plugs = {t: stretches(t, slug, speed=2.0) for t in (0.0, 0.5, 1.0, 4.0, 5.0, 6.0)}
+    assert plugs == {
         **{0.0: [], 0.5: []},
         **{1.0: [(0.0, 1.0, 300.0)], 4.0: [(4.0, 7.0, 300.0)], 5.0: [(6.0, 8.0, 300.0)], 6.0: []},
     }
@@ -73,8 +73,8 @@ def matrices_of(part: InnerFlow, t: float) -> FlowMatrices:
     """As they are at a time."""
     part.renew_kernel_data(t, t)
     numbers: Any = part.kernel_data()
-    found: FlowMatrices = numbers.now
-    return found
+    matrices: FlowMatrices = numbers.now
+    return matrices
 
 
 def part_in(line: Line, flow: Flow) -> InnerFlow:
@@ -176,8 +176,8 @@ def lowest(K: Array, C: Array, M: Array) -> float:
     n = len(K)
     A = np.block([[np.zeros((n, n)), np.eye(n)], [-K, -C]])
     B = np.block([[np.eye(n), np.zeros((n, n))], [np.zeros((n, n)), M]])
-    found = eig(A, B, right=False)
-    return float(np.abs(found.imag).min())
+    values = eig(A, B, right=False)
+    return float(np.abs(values.imag).min())
 
 
 @pytest.mark.parametrize("share", [0.0, 0.4, 0.8])
@@ -266,9 +266,9 @@ WRONG: list[tuple[Mapping, str]] = [
 ]
 
 
-@pytest.mark.parametrize(("more", "reported"), WRONG)
-def test_contents_that_can_not_be_are_reported(more: Mapping, reported: str) -> None:
-    with pytest.raises(SceneError, match=reported):
+@pytest.mark.parametrize(("more", "message"), WRONG)
+def test_contents_that_can_not_be_are_reported(more: Mapping, message: str) -> None:
+    with pytest.raises(SceneError, match=message):
         read(scene({"density": 850.0} | more))
 
 

@@ -131,8 +131,8 @@ def test_the_share_of_the_bow_grows_smoothly() -> None:
     law = TensionOnly(*(np.full(1, value) for value in (1e-4, 0.1, 5.0)))
 
     def state(share: float) -> Heaped:
-        found: Heaped = heaped_state.kernels[TensionOnly](law, 0, np.array([0.0, share * LENGTH]), LENGTH, 4e5)
-        return found
+        heap: Heaped = heaped_state.kernels[TensionOnly](law, 0, np.array([0.0, share * LENGTH]), LENGTH, 4e5)
+        return heap
 
     def after(share: float, s: float) -> Array:
         return np.array(state(share + s)[:2])

@@ -35,8 +35,8 @@ def test_consistent_integrals_are_those_of_the_shape_functions() -> None:
 def test_stations_integrate_a_quadratic_load_exactly() -> None:
     at = stations.stations(L)
     arc = stations.POINTS * L[:, None]
-    found = np.einsum("ega,egi->eai", at.weighted, np.stack([arc**2, arc], axis=-1))
-    assert found[:, 0] + found[:, 2] == pytest.approx(np.stack([L**3 / 3.0, L**2 / 2.0], axis=1))
+    loads = np.einsum("ega,egi->eai", at.weighted, np.stack([arc**2, arc], axis=-1))
+    assert loads[:, 0] + loads[:, 2] == pytest.approx(np.stack([L**3 / 3.0, L**2 / 2.0], axis=1))
 
 
 @pytest.mark.parametrize("theta", [0.0, 1e-9, 1e-3, 0.3, 0.3175, 0.3176, 0.32, 1.0, 2.5])

@@ -173,11 +173,11 @@ def test_small_deflections_give_textbook_section_forces() -> None:
     beam = Beam(line, e)
     solve(line, [beam])
     state = State.at_rest(1.0, line.size)
-    found = section_forces(line, e, state, element_residual(line, [beam], state))
+    forces = section_forces(line, e, state, element_residual(line, [beam], state))
     middle = 50.0 * 12.0**2 / 24.0
-    assert found.bending_moment[[0, 3, -1]] == pytest.approx([2.0 * middle, middle, 2.0 * middle], rel=1e-3)
-    assert found.curvature == pytest.approx(found.bending_moment / 2.0e6, rel=1e-12)
-    assert found.moment[3, 1] < 0.0 < found.moment[0, 1]  # sagging turns the tangent up, about -y
+    assert forces.bending_moment[[0, 3, -1]] == pytest.approx([2.0 * middle, middle, 2.0 * middle], rel=1e-3)
+    assert forces.curvature == pytest.approx(forces.bending_moment / 2.0e6, rel=1e-12)
+    assert forces.moment[3, 1] < 0.0 < forces.moment[0, 1]  # sagging turns the tangent up, about -y
 
 
 @both_dimensions
@@ -207,11 +207,11 @@ def test_largest_moment_under_an_even_load_lies_between_nodes(dimension: int) ->
     beam = Beam(line, e)
     solve(line, [beam])
     state = State.at_rest(1.0, line.size)
-    found = section_forces(line, e, state, element_residual(line, [beam], state))
+    forces = section_forces(line, e, state, element_residual(line, [beam], state))
     middle = 50.0 * 12.0**2 / 8.0
-    assert found.bending_moment.max() == pytest.approx(0.96 * middle, rel=1e-3)
-    assert np.array(found.largest_moment) == pytest.approx([middle, 6.0], rel=1e-3)
-    assert np.array(found.largest_curvature) == pytest.approx([middle / 2.0e6, 6.0], rel=1e-3)
+    assert forces.bending_moment.max() == pytest.approx(0.96 * middle, rel=1e-3)
+    assert np.array(forces.largest_moment) == pytest.approx([middle, 6.0], rel=1e-3)
+    assert np.array(forces.largest_curvature) == pytest.approx([middle / 2.0e6, 6.0], rel=1e-3)
 
 
 @both_dimensions
@@ -221,9 +221,9 @@ def test_largest_moment_under_a_point_load_is_not_overshot(dimension: int) -> No
     parts = (Beam(line, e), PointLoads(line, [AppliedLoad(lambda t: t, 4.8, force=np.array([0.0, 0.0, -50.0]))]))
     solve(line, parts)
     state = State.at_rest(1.0, line.size)
-    found = section_forces(line, e, state, element_residual(line, parts, state))
-    moment, arc = map(float, found.largest_moment)
-    assert moment == found.bending_moment[2]
+    forces = section_forces(line, e, state, element_residual(line, parts, state))
+    moment, arc = map(float, forces.largest_moment)
+    assert moment == forces.bending_moment[2]
     assert arc == pytest.approx(4.8)
     assert moment == pytest.approx(50.0 * 4.8 * 7.2 / 12.0, rel=1e-3)
 
@@ -235,9 +235,9 @@ def test_curvature_is_resolved_in_section_axes() -> None:
     parts = (Beam(line, e), PointLoads(line, [AppliedLoad(lambda t: t, 12.0, moment=moment)]))
     solve(line, parts, tolerance=1e-9)
     state = State.at_rest(1.0, line.size)
-    found = section_forces(line, e, state, element_residual(line, parts, state))
-    assert found.bending_moment == pytest.approx(50.0, rel=1e-3)
-    assert found.curvature == pytest.approx(np.hypot(30.0 / 2.0e4, 40.0 / 8.0e4), rel=1e-3)
+    forces = section_forces(line, e, state, element_residual(line, parts, state))
+    assert forces.bending_moment == pytest.approx(50.0, rel=1e-3)
+    assert forces.curvature == pytest.approx(np.hypot(30.0 / 2.0e4, 40.0 / 8.0e4), rel=1e-3)
 
 
 @both_dimensions
@@ -250,8 +250,8 @@ def test_a_spring_holds_the_end_like_its_stiffness_says(dimension: int) -> None:
     state = State.at_rest(1.0, line.size)
     tangent = line.trial(state).turn.tangent[0, 0] @ line.basis.T
     assert tangent == pytest.approx([np.cos(0.2), 0.0, np.sin(0.2)], abs=1e-9)
-    found = section_forces(line, e, state, element_residual(line, [weightless], state))
-    assert found.end_moment[0] == pytest.approx([0.0, 200.0, 0.0], abs=1e-6)
+    forces = section_forces(line, e, state, element_residual(line, [weightless], state))
+    assert forces.end_moment[0] == pytest.approx([0.0, 200.0, 0.0], abs=1e-6)
     assert spring.energy(state).strain == pytest.approx(0.5 * 1000.0 * 0.2**2)
 
 

@@ -80,8 +80,8 @@ def test_forces_are_in_the_groups_that_a_part_declares(name: str, dimension: int
     part, state = MAKERS[name](at), at.state(1)
     forces = Forces.zeros(state.u.size)
     part.residual(state, forces)
-    found = {group: bool(f.any()) for group, f in zip("IFE", (forces.inertia, forces.force, forces.end), strict=True)}
-    assert found == {group: group in part.traits.groups for group in "IFE"}
+    acts = {group: bool(f.any()) for group, f in zip("IFE", (forces.inertia, forces.force, forces.end), strict=True)}
+    assert acts == {group: group in part.traits.groups for group in "IFE"}
 
 
 @pytest.mark.parametrize("groups", ["", "X", "IFX"])

@@ -53,11 +53,11 @@ def test_an_even_layer_is_a_line_type_by_hand(weight: Mapping) -> None:
     """In current, waves and at the surface: every place of every step."""
     bare = in_waves(0.1, 21.0)
     bare["line_types"]["pipe"] |= weight
-    found, expected = stage_histories(grown(bare, EVERYWHERE)), stage_histories(by_hand(bare))
-    for one, other in zip(found, expected, strict=True):
+    computed, expected = stage_histories(grown(bare, EVERYWHERE)), stage_histories(by_hand(bare))
+    for one, other in zip(computed, expected, strict=True):
         np.testing.assert_allclose(np.array(one.position), np.array(other.position), rtol=0.0, atol=1e-11)
     plain = stage_histories(bare)
-    assert np.abs(np.array(found[1].position) - np.array(plain[1].position)).max() > 0.01
+    assert np.abs(np.array(computed[1].position) - np.array(plain[1].position)).max() > 0.01
 
 
 def hanging(growth: list[list[float]] | None, n: int = 20, **more: object) -> Mapping:
@@ -144,7 +144,7 @@ def test_a_riser_without_growth_does_not_look_for_it(monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.parametrize(
-    ("growth", "reported"),
+    ("growth", "message"),
     [
         ([[10.0, 0.1, 1300.0], [0.0, 0.1, 1300.0]], "the heights z must increase"),
         ([[0.0, -0.1, 1300.0]], r"water\.marine_growth\.0\.1"),
@@ -153,8 +153,8 @@ def test_a_riser_without_growth_does_not_look_for_it(monkeypatch: pytest.MonkeyP
         ([], r"water\.marine_growth"),
     ],
 )
-def test_growth_that_is_none_is_reported(growth: list[list[float]], reported: str) -> None:
-    with pytest.raises(SceneError, match=reported):
+def test_growth_that_is_none_is_reported(growth: list[list[float]], message: str) -> None:
+    with pytest.raises(SceneError, match=message):
         scene_from_mapping(hanging(growth))
 
 

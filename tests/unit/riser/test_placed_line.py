@@ -33,9 +33,9 @@ def test_a_line_is_where_its_state_is_whatever_came_before(dimension: int) -> No
 def require_placed(at: Configuration, fresh: LineTrials, state: State) -> None:
     fresh.now.move(state)
     placed: tuple[Any, ...] = fresh.now.at
-    held: tuple[Any, ...] = at
-    for found, expected in zip(held, placed, strict=True):
-        np.testing.assert_array_equal(found, expected)
+    memory: tuple[Any, ...] = at
+    for array, expected in zip(memory, placed, strict=True):
+        np.testing.assert_array_equal(array, expected)
 
 
 def test_it_counts_where_it_is_placed() -> None:

@@ -60,8 +60,8 @@ def test_potential_is_that_of_a_cubic_by_the_angles_of_its_ends(loaded: Loaded) 
         over_sine = 1.0 / np.sinc(np.arccos(np.clip(cosine, -1.0, 1.0)) / np.pi)
         across = np.sum(load * t, axis=1) - cosine * np.sum(load * along, axis=1)
         expected += sign * over_sine * across * length**2 / 12.0
-    found = planar_elements.load_potential(chord, *ends, middle, length, load)
-    assert found == pytest.approx(expected, rel=1e-12, abs=1e-13)
+    potential = planar_elements.load_potential(chord, *ends, middle, length, load)
+    assert potential == pytest.approx(expected, rel=1e-12, abs=1e-13)
 
 
 def test_across_its_chord_a_load_acts_like_on_a_fixed_beam() -> None:

@@ -69,16 +69,16 @@ def test_exponential_is_the_turn_about_the_axis(axis: Vec, angle: float) -> None
 @example(axis=(1.0, 1.0, -1.0), angle=NEAR_PI)
 def test_logarithm_inverts_the_exponential(axis: Vec, angle: float) -> None:
     rotation = np.array(turned(axis, angle))
-    found = np.array(rotations.log(rotations.exp(vector(rotation))))
-    assert np.abs(found - rotation).max() < 1e-14 + 1e-14 * angle
+    logarithm = np.array(rotations.log(rotations.exp(vector(rotation))))
+    assert np.abs(logarithm - rotation).max() < 1e-14 + 1e-14 * angle
 
 
 @pytest.mark.parametrize("axis", [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.6, 0.0, -0.8)])
 def test_logarithm_of_a_half_turn_has_length_pi(axis: Vec) -> None:
     R = as_array(rotations.exp(turned(axis, np.pi)))
-    found = np.array(rotations.log(rotations.exp(turned(axis, np.pi))))
-    assert np.linalg.norm(found) == pytest.approx(np.pi, abs=1e-14)
-    assert np.abs(as_array(rotations.exp(vector(found))) - R).max() < 1e-14
+    logarithm = np.array(rotations.log(rotations.exp(turned(axis, np.pi))))
+    assert np.linalg.norm(logarithm) == pytest.approx(np.pi, abs=1e-14)
+    assert np.abs(as_array(rotations.exp(vector(logarithm))) - R).max() < 1e-14
 
 
 @pytest.mark.parametrize("angle", [0.0, 1e-5, 0.3, 0.499, 0.501, 1.5, 3.0, 5.0])
@@ -103,9 +103,9 @@ def test_inverse_tangent_map(axis: Vec, angle: float) -> None:
 @pytest.mark.parametrize("angle", [0.0, 1e-5, 0.3, 0.499, 0.501, 1.5, 3.0, 5.0])
 def test_derivative_of_the_tangent_map(angle: float) -> None:
     rotation, m = turned((0.3, -0.7, 0.5), angle), (0.4, 1.1, -0.2)
-    found = as_array(rotations.right_tangent_derivative(rotation, m))
+    computed = as_array(rotations.right_tangent_derivative(rotation, m))
     expected = np.einsum("ijk,j->ik", derivative(as_arrays(rotations.right_tangent), rotation), m)
-    assert np.abs(found - expected).max() < 2e-10
+    assert np.abs(computed - expected).max() < 2e-10
 
 
 @pytest.mark.parametrize(

@@ -21,8 +21,8 @@ def strain(values: Array) -> Strain:
     return Strain(axial, twist, (curvature[0], curvature[1]), (curvature[2], curvature[3]), 0.0)
 
 
-def as_list(found: Strain) -> Array:
-    return np.array([found.axial, found.twist, *found.first, *found.second])
+def as_list(strains: Strain) -> Array:
+    return np.array([strains.axial, strains.twist, *strains.first, *strains.second])
 
 
 def bent(seed: int, largest: float) -> Array:
@@ -76,5 +76,5 @@ def test_twist_takes_the_least_energy(curvature: tuple[float, float]) -> None:
 
     three = [stored(a) for a in (-1.0, 0.0, 1.0)]
     first, second = 0.5 * (three[2] - three[0]), three[2] + three[0] - 2.0 * three[1]
-    found = strain(np.array([0.0, 0.0, *curvature, *curvature]))
-    assert energy(STRIP, found, found) == pytest.approx(three[1] - 0.5 * first**2 / second, rel=1e-12)
+    strains = strain(np.array([0.0, 0.0, *curvature, *curvature]))
+    assert energy(STRIP, strains, strains) == pytest.approx(three[1] - 0.5 * first**2 / second, rel=1e-12)

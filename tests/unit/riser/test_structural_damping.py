@@ -59,8 +59,8 @@ def test_forces_are_beta_times_the_stiffness_about_the_unstressed_shape(dimensio
     e.damping[:] = 0.25
     v = np.random.default_rng(7).normal(size=line.size)
     expected = 0.25 * tangent([Beam(line, e)], State.at_rest(0.0, line.size)) @ v
-    found = residual([StructuralDamping(line, e)], moving(0.0 * v, v))
-    assert np.abs(found - expected).max() < 1e-10 * np.abs(expected).max()
+    forces = residual([StructuralDamping(line, e)], moving(0.0 * v, v))
+    assert np.abs(forces - expected).max() < 1e-10 * np.abs(expected).max()
 
 
 @both_dimensions

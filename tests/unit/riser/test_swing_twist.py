@@ -35,8 +35,8 @@ def by_spin(f: Callable[[corotation.SwingTwist], Vec], A: Array, step: float = 5
 @UNHURRIED
 def test_split_inverts_the_composition(twist: float, swing: float, direction: float) -> None:
     angles = twist, swing * np.cos(direction), swing * np.sin(direction)
-    found = corotation.split(matrix(rotation(*angles))).angles
-    assert np.abs(np.array(found) - angles).max() < 1e-11
+    split_angles = corotation.split(matrix(rotation(*angles))).angles
+    assert np.abs(np.array(split_angles) - angles).max() < 1e-11
 
 
 @pytest.mark.parametrize("angles", ANGLES)
@@ -58,9 +58,9 @@ def test_moment_does_the_work_of_the_generalised_moment(angles: Vec) -> None:
 def test_moment_variation_is_the_derivative_of_the_moment(angles: Vec) -> None:
     A = rotation(*angles)
     at = corotation.split(matrix(A))
-    found = np.array([corotation.moment_variation(at, MU, vector(unit)) for unit in np.eye(3)]).T
+    variation = np.array([corotation.moment_variation(at, MU, vector(unit)) for unit in np.eye(3)]).T
     expected = by_spin(lambda s: corotation.moment(s, MU), A)
-    assert np.abs(found - expected).max() < 1e-9
+    assert np.abs(variation - expected).max() < 1e-9
     assert np.abs(expected).max() > 0.1
 
 

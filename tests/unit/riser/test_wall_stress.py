@@ -52,8 +52,8 @@ def test_lame_s_tube() -> None:
     at = [hoop_and_radial_stress(LOADS, np.array(2.0 * radius), PIPE)[1] for radius in (a, b)]
     assert at == pytest.approx([-34.5e6, -12.0e6], rel=1e-12)
     thin, burst = Wall(np.array(1.0), np.array(1.0 - 2e-6)), LOADS._replace(outside=np.array(0.0))
-    found, _ = hoop_and_radial_stress(burst, np.array(1.0), thin)
-    assert found == pytest.approx(34.5e6 * 1.0 / (2.0 * 1e-6), rel=1e-5)
+    computed, _ = hoop_and_radial_stress(burst, np.array(1.0), thin)
+    assert computed == pytest.approx(34.5e6 * 1.0 / (2.0 * 1e-6), rel=1e-5)
 
 
 def test_von_mises_by_hand() -> None:
@@ -83,21 +83,21 @@ def test_the_largest_is_what_looking_around_finds(tension: float, pressures: tup
 def test_at_a_joint_both_walls_have_a_section() -> None:
     """Thick, thin, none, thin: what the side with the larger stress has is told at the node."""
     wall = Wall(np.array([0.30, 0.28, 0.0, 0.28]), np.array([0.20, 0.25, 0.0, 0.25]))
-    found = wall_sections(wall, np.array([3.0, 2.0, 0.0, 2.0]), np.ones((4, 2)))
-    assert found.node.tolist() == [0, 1, 1, 2, 3, 4]
-    assert found.wall.outer_diameter.tolist() == [0.30, 0.30, 0.28, 0.28, 0.28, 0.28]
-    assert found.allowable.tolist() == [3.0, 3.0, 2.0, 2.0, 2.0, 2.0]
+    sections = wall_sections(wall, np.array([3.0, 2.0, 0.0, 2.0]), np.ones((4, 2)))
+    assert sections.node.tolist() == [0, 1, 1, 2, 3, 4]
+    assert sections.wall.outer_diameter.tolist() == [0.30, 0.30, 0.28, 0.28, 0.28, 0.28]
+    assert sections.allowable.tolist() == [3.0, 3.0, 2.0, 2.0, 2.0, 2.0]
     stress = np.array([1.0, 2.0, 5.0, 6.0, 7.0, 8.0])
-    assert found.at_nodes(-stress, stress, 5).tolist() == [-1.0, -5.0, -6.0, -7.0, -8.0]
-    assert found.at_nodes(-stress, -stress, 5).tolist() == [-1.0, -2.0, -6.0, -7.0, -8.0]
-    tension = found.loads(*np.array([[10.0] * 5, *([[0.0] * 5] * 3), [2.0] * 5, [1.0] * 5])).tension
+    assert sections.at_nodes(-stress, stress, 5).tolist() == [-1.0, -5.0, -6.0, -7.0, -8.0]
+    assert sections.at_nodes(-stress, -stress, 5).tolist() == [-1.0, -2.0, -6.0, -7.0, -8.0]
+    tension = sections.loads(*np.array([[10.0] * 5, *([[0.0] * 5] * 3), [2.0] * 5, [1.0] * 5])).tension
     assert tension[1] == pytest.approx(10.0 + 0.25 * np.pi * (2.0 * 0.20**2 - 0.30**2))
     assert tension[2] == pytest.approx(10.0 + 0.25 * np.pi * (2.0 * 0.25**2 - 0.28**2))
 
 
 def test_nodes_between_no_walls_have_none() -> None:
     wall = Wall(np.array([0.3, 0.0, 0.0]), np.array([0.2, 0.0, 0.0]))
-    found = wall_sections(wall, np.zeros(3), np.ones((3, 2)))
-    assert found.node.tolist() == [0, 1]
-    reported = found.at_nodes(np.array([1.0, 2.0]), np.array([1.0, 2.0]), 4)
-    assert np.isnan(reported).tolist() == [False, False, True, True]
+    sections = wall_sections(wall, np.zeros(3), np.ones((3, 2)))
+    assert sections.node.tolist() == [0, 1]
+    values = sections.at_nodes(np.array([1.0, 2.0]), np.array([1.0, 2.0]), 4)
+    assert np.isnan(values).tolist() == [False, False, True, True]

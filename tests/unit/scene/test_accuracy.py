@@ -40,8 +40,8 @@ def summary(folder: Path) -> Any:
 
 def worst(folder: Path, name: str) -> float:
     """The largest true error of a run's key results."""
-    reported, known = key_results(summary(folder)), references.read()[name]
-    return max(each.relative(each.value - known[key][0]) for key, each in reported.items() if key in known)
+    results, known = key_results(summary(folder)), references.read()[name]
+    return max(each.relative(each.value - known[key][0]) for key, each in results.items() if key in known)
 
 
 @pytest.mark.parametrize(("given", "share"), [("1 %", 0.01), ("0.5%", 0.005), (" 20 % ", 0.2), (0.02, 0.02)])
@@ -108,8 +108,8 @@ def test_nodes_are_where_something_acts(tmp_path: Path) -> None:
     arcs = read_scene(tmp_path / "run" / "scene.yaml").line.node_arcs
     for place in (4.3, 7.1):
         assert min(abs(arc - place) for arc in arcs) < 1e-9
-    reported = key_results(summary(tmp_path / "run"))
-    assert reported["load: largest bending moment"].value == pytest.approx(2.0e3 + 30.0 * 9.81 * 7.1, rel=2e-3)
+    results = key_results(summary(tmp_path / "run"))
+    assert results["load: largest bending moment"].value == pytest.approx(2.0e3 + 30.0 * 9.81 * 7.1, rel=2e-3)
     assert summary(tmp_path / "run")["accuracy"]["reached"]
 
 
@@ -128,17 +128,17 @@ def test_nothing_else_runs_before_the_setting_is_chosen(tmp_path: Path) -> None:
 )
 def test_statics_reach_it(name: str, tmp_path: Path) -> None:
     run_to_accuracy(scene_from_mapping(asking(name)), tmp_path / "run")
-    reported = summary(tmp_path / "run")
-    assert reported["accuracy"]["reached"]
-    assert reported["accuracy"]["largest_error"] <= 0.01
+    data = summary(tmp_path / "run")
+    assert data["accuracy"]["reached"]
+    assert data["accuracy"]["largest_error"] <= 0.01
     assert worst(tmp_path / "run", name) <= 0.01
-    assert reported["finished"]
+    assert data["finished"]
 
 
 def test_elements_are_short_where_curvature_asks_for_it() -> None:
     """At the clamped ends of a taut beam, in a layer of 0.35 m; in the middle they are ten times as long."""
-    found = trial(first_setting(scene_from_mapping(asking("beam under tension, unresolved"))), 0.01, MPI.COMM_WORLD)
-    lengths = [x for segment in found.scene.line.segments for x in segment.element_lengths]
+    outcome = trial(first_setting(scene_from_mapping(asking("beam under tension, unresolved"))), 0.01, MPI.COMM_WORLD)
+    lengths = [x for segment in outcome.scene.line.segments for x in segment.element_lengths]
     assert max(lengths[0], lengths[-1]) < 0.35
     assert max(lengths) > 10.0 * lengths[0]
 
@@ -150,8 +150,8 @@ def test_motion_reaches_it_and_its_scene_is_kept(tmp_path: Path) -> None:
     chosen = read_scene(tmp_path / "run" / "scene.yaml")
     assert chosen.accuracy is None
     run(chosen, tmp_path / "again")
-    reported, again = (key_results(summary(tmp_path / folder)) for folder in ("run", "again"))
-    assert {key: each.value for key, each in reported.items()} == {key: each.value for key, each in again.items()}
+    results, again = (key_results(summary(tmp_path / folder)) for folder in ("run", "again"))
+    assert {key: each.value for key, each in results.items()} == {key: each.value for key, each in again.items()}
 
 
 def test_accuracy_that_is_not_reached_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -162,11 +162,11 @@ def test_accuracy_that_is_not_reached_is_reported(tmp_path: Path, monkeypatch: p
     done = CliRunner().invoke(app, ["run", str(file), "-o", str(folder)])
     assert done.exit_code == SolveError.exit_status
     line_with(done.output, "accuracy:", "20.00%", "not reached:")
-    reported = summary(folder)
-    assert reported["accuracy"]["reached"] is False
-    assert reported["accuracy"]["largest_error"] > 0.2
-    assert max(bar["bar"] / abs(bar["value"]) for bar in reported["error_bars"]["quantities"] if bar["bar"]) > 0.2
-    assert reported["finished"]
+    data = summary(folder)
+    assert data["accuracy"]["reached"] is False
+    assert data["accuracy"]["largest_error"] > 0.2
+    assert max(bar["bar"] / abs(bar["value"]) for bar in data["error_bars"]["quantities"] if bar["bar"]) > 0.2
+    assert data["finished"]
 
 
 def test_an_impact_that_hardly_converges_ends_the_search_early(
@@ -177,9 +177,9 @@ def test_an_impact_that_hardly_converges_ends_the_search_early(
     scene = scene_from_mapping(asking("cantilever under a sudden load", "1 %"))
     with pytest.raises(AccuracyError, match=r"at least \d+ times .*run has that"):
         run_to_accuracy(scene, tmp_path / "run")
-    reported, elements = summary(tmp_path / "run"), read_scene(tmp_path / "run" / "scene.yaml").line.segments
-    assert reported["accuracy"]["reached"] is False
-    assert reported["finished"]
+    data, elements = summary(tmp_path / "run"), read_scene(tmp_path / "run" / "scene.yaml").line.segments
+    assert data["accuracy"]["reached"] is False
+    assert data["finished"]
     assert sum(part.elements or 0 for part in elements) < 200  # a second run has some 400
 
 
@@ -269,13 +269,13 @@ def test_ranks_choose_alike(tmp_path: Path) -> None:
 def test_error_is_of_the_run_that_is_reported(tmp_path: Path) -> None:
     """Bars of the summary are the accuracy's: the largest over its scale is what is told."""
     run_to_accuracy(scene_from_mapping(asking("cantilever, tip load")), tmp_path / "run")
-    reported = summary(tmp_path / "run")
-    scales = {key: each.scale for key, each in key_results(reported).items()}
-    bars = reported["error_bars"]["quantities"]
+    data = summary(tmp_path / "run")
+    scales = {key: each.scale for key, each in key_results(data).items()}
+    bars = data["error_bars"]["quantities"]
     shares = {f"{bar['stage']}: {bar['name']}": bar["bar"] for bar in bars}
-    assert max(bar / scales[key] for key, bar in shares.items()) == pytest.approx(reported["accuracy"]["largest_error"])
+    assert max(bar / scales[key] for key, bar in shares.items()) == pytest.approx(data["accuracy"]["largest_error"])
 
 
 def test_editors_know_both_ways_of_writing_it() -> None:
-    reported = json.loads(schema_text())["properties"]["accuracy"]
-    assert {each["type"] for each in reported["anyOf"]} == {"string", "number", "null"}
+    schema = json.loads(schema_text())["properties"]["accuracy"]
+    assert {each["type"] for each in schema["anyOf"]} == {"string", "number", "null"}

@@ -172,10 +172,10 @@ def test_forces_balance_to_round_off(kind: str, dimension: int) -> None:
     np.testing.assert_allclose(case.riser.tributary_length @ along, on_soil, atol=1e-13 * np.abs(on_soil).max())
     np.testing.assert_allclose(-along[:, 2], case.contact.force_per_length(state), rtol=1e-12)
     assert on_riser[2] > 100.0
-    held = case.riser.x[:, -1].min()
-    case.riser.x[:, -1] += 10.0 - held  # off the soil
+    lowest = case.riser.x[:, -1].min()
+    case.riser.x[:, -1] += 10.0 - lowest  # off the soil
     assert not case.contact.force_on_soil_per_length(case.state(small(case))).any()
-    case.riser.x[:, -1] += held - 10.0
+    case.riser.x[:, -1] += lowest - 10.0
     out_of_plane = np.zeros(3) if dimension == 3 else np.array([-np.sin(0.1), np.cos(0.1), 0.0])
     unbalanced = on_riser + on_soil
     unbalanced -= (unbalanced @ out_of_plane) * out_of_plane
@@ -265,7 +265,7 @@ def test_weightless_groups_and_inactive_ranks() -> None:
 def assert_touches_nothing(contact: RiserContact) -> None:
     state = State.at_rest(0.0, 4 * 6)
     along = contact.force_per_length, contact.penetration, contact.depth
-    assert all(np.array_equal(reported(state), np.zeros(4)) for reported in along)
+    assert all(np.array_equal(force(state), np.zeros(4)) for force in along)
     np.testing.assert_array_equal(contact.force_on_riser(state), np.zeros(3))
     assert contact.max_penetration(state) == 0.0
     assert np.isnan(contact.touchdown_arc(state))
@@ -305,9 +305,9 @@ def test_vertical_steps_never_gain_energy(before: list[float], after: list[float
     start, end = case.state(), case.state(u)
     dissipated = case.contact.work(start, end).dissipated
     assert dissipated >= -1e-12
-    taken = case.residual(u) @ u
+    work = case.residual(u) @ u
     stored = case.contact.energy(end).potential - case.contact.energy(start).potential
-    assert dissipated == pytest.approx(taken - stored, abs=1e-12)
+    assert dissipated == pytest.approx(work - stored, abs=1e-12)
 
 
 def test_pattern_is_outgrown_and_rebuilt() -> None:

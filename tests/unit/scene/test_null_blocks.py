@@ -60,5 +60,5 @@ def test_a_case_takes_the_code_check_off(tmp_path: Path) -> None:
 
 def test_an_override_of_the_command_line_takes_blocks_off(tmp_path: Path) -> None:
     (tmp_path / "checked.yaml").write_text(CHECKED, encoding="utf-8")
-    found = read_scene(tmp_path / "checked.yaml", ["code_check=null", "solver="])
-    assert (found.code_check, found.solver.load_steps) == ((), scene_from_mapping(hanging()).solver.load_steps)
+    scene = read_scene(tmp_path / "checked.yaml", ["code_check=null", "solver="])
+    assert (scene.code_check, scene.solver.load_steps) == ((), scene_from_mapping(hanging()).solver.load_steps)

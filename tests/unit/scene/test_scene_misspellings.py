@@ -86,12 +86,12 @@ def test_no_value_causes_anything_but_a_reported_problem(data: st.DataObject, va
     for item in path[:-1]:
         holder = holder[item]
     holder[path[-1]] = value
-    for line in reported(scene):  # what to do about it, or a likely unit
+    for line in problems_of(scene):  # what to do about it, or a likely unit
         assert line.startswith("scene: ")
         assert "; " in line or line.endswith("?")
 
 
-def reported(scene: Any) -> list[str]:
+def problems_of(scene: Any) -> list[str]:
     """The lines told about a scene; none when it is right."""
     try:
         scene_from_mapping(scene)

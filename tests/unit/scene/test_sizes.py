@@ -110,10 +110,10 @@ def said(data: Any) -> dict[str, str]:
 @pytest.mark.parametrize(("path", "unit", "factor"), EACH)
 def test_each_number_in_another_unit_is_told_with_what_it_would_be(path: str, unit: str, factor: float) -> None:
     _, right = put(SCENE, path, None)
-    found = said(put(SCENE, path, right / factor)[0])
-    assert path in found, found
-    line_with(found[path], f"in {unit}", f"{right:.4g}")
-    assert f"{right / factor:g}" in found[path]
+    text = said(put(SCENE, path, right / factor)[0])
+    assert path in text, text
+    line_with(text[path], f"in {unit}", f"{right:.4g}")
+    assert f"{right / factor:g}" in text[path]
 
 
 def test_a_scene_in_si_units_is_told_of_nothing() -> None:
@@ -162,8 +162,8 @@ def test_each_number_that_stands_alone(path: str) -> None:
     beside = {"volume": 2e-3 * right} if path.endswith("mass") else {}
     assert said(nested(path, right, beside)) == {}
     for unit, factor in units.items():
-        found = said(nested(path, right / factor, beside))
-        line_with(found[path], f"in {unit}", f"{right:.4g}")
+        text = said(nested(path, right / factor, beside))
+        line_with(text[path], f"in {unit}", f"{right:.4g}")
 
 
 def forces(**end: Any) -> Any:
@@ -244,9 +244,9 @@ def test_check_warns_of_it(tmp_path: Path) -> None:
 def test_a_diameter_is_in_the_unit_that_suits_its_mass() -> None:
     """10 3/4 in with 140 kg/m: 10.75 mm would be a bar of 1,500 t/m3. A wide float of 500 kg/m3 is plausible."""
     pipe = {"outer_diameter": 10.75, "inner_diameter": 9.5, "mass": 101.0, "EA": 2.65e9}
-    found = said({"line_types": {"pipe": pipe}})
-    assert set(found) == {"line_types.pipe.outer_diameter", "line_types.pipe.inner_diameter"}
-    assert found["line_types.pipe.outer_diameter"].endswith("is it in inches, 0.2731 m?")
+    text = said({"line_types": {"pipe": pipe}})
+    assert set(text) == {"line_types.pipe.outer_diameter", "line_types.pipe.inner_diameter"}
+    assert text["line_types.pipe.outer_diameter"].endswith("is it in inches, 0.2731 m?")
     wide = {"outer_diameter": 3.0, "inner_diameter": 0.3, "mass": 3500.0, "EA": 2.65e9}
     assert said({"line_types": {"pipe": wide}}) == {}
 

@@ -71,9 +71,9 @@ def test_a_tab_is_named(old: str, at: int, tmp_path: Path) -> None:
 )
 def test_a_blank_missing_after_a_colon(old: str, new: str, at: int, key: str, tmp_path: Path) -> None:
     lines = refused(tmp_path, old, new)
-    told = line_with(lines, f"a blank is missing after the colon of {key}")
-    assert abs(int(told.split("scene.yaml:")[1].split(":")[0]) - at) <= 1, told
-    assert new.split("\n")[-1].strip() in told
+    message = line_with(lines, f"a blank is missing after the colon of {key}")
+    assert abs(int(message.split("scene.yaml:")[1].split(":")[0]) - at) <= 1, message
+    assert new.split("\n")[-1].strip() in message
 
 
 WORDS = [
@@ -97,9 +97,9 @@ WORDS = [
 def test_words_of_other_programs(old: str, new: str, key: str, tmp_path: Path) -> None:
     """One line, with the line of the file and the right key; what is missing only by another name is not told."""
     lines = refused(tmp_path, old, new)
-    told = line_with(lines, f'did you mean "{key}"?')
-    written = (tmp_path / "scene.yaml").read_text().splitlines()[int(told.split(":")[1]) - 1]
-    assert f'the line is "{written.strip()}"' in told
+    message = line_with(lines, f'did you mean "{key}"?')
+    written = (tmp_path / "scene.yaml").read_text().splitlines()[int(message.split(":")[1]) - 1]
+    assert f'the line is "{written.strip()}"' in message
     assert not any("required" in line for line in lines)
 
 
@@ -169,9 +169,9 @@ def test_values_are_cut_between_their_parts() -> None:
 def test_long_lines_of_messages_keep_their_sense() -> None:
     names = [f"mooring line {n}" for n in range(400)]
     line = f"scene.yaml:3: joints.a.line: must be one of lines ({', '.join(names)}); correct it"
-    told = in_short(f"first\n{line}")
-    assert told.splitlines()[0] == "first"
-    assert told.endswith("mooring line 6, mooring line 7, ... (400 in all)); correct it")
+    short = in_short(f"first\n{line}")
+    assert short.splitlines()[0] == "first"
+    assert short.endswith("mooring line 6, mooring line 7, ... (400 in all)); correct it")
     assert str(SceneError("x" * 9000 + "; correct it")).endswith("; correct it")
     assert len(str(SceneError("x" * 9000))) < LONGEST + 100
     assert str(SceneError("y" * LONGEST)) == "y" * LONGEST

@@ -70,9 +70,9 @@ def test_elastic_modulus_is_the_same_at_every_depth() -> None:
 @pytest.mark.parametrize("law", [rock(np.array([1.0]), NU), clay(np.array([1.0]))])
 def test_elastic_strain_inverts_the_elastic_stress(law: Formula) -> None:
     strain = 1e-6 * np.random.default_rng(1).standard_normal((1, 6))
-    found = law.update(strain, law.start())
-    np.testing.assert_allclose(found.elastic, strain, rtol=1e-12)
-    np.testing.assert_allclose(found.stored, 0.5 * np.sum(found.stress * strain, axis=1), rtol=1e-12)
+    update = law.update(strain, law.start())
+    np.testing.assert_allclose(update.elastic, strain, rtol=1e-12)
+    np.testing.assert_allclose(update.stored, 0.5 * np.sum(update.stress * strain, axis=1), rtol=1e-12)
 
 
 @pytest.mark.parametrize("law", [rock(np.zeros(3), NU), clay(np.zeros(3))])
@@ -128,12 +128,12 @@ def test_stress_never_exceeds_the_limit_and_slip_never_shrinks() -> None:
 
 def test_nothing_happens_at_zero_strain() -> None:
     law = clay(np.zeros(2))
-    found = law.update(np.zeros((2, 6)), law.start())
-    assert not found.stress.any()
-    assert not found.history.any()
-    assert not found.stored.any()
+    update = law.update(np.zeros((2, 6)), law.start())
+    assert not update.stress.any()
+    assert not update.history.any()
+    assert not update.stored.any()
     np.testing.assert_array_equal(
-        law.update(np.zeros((2, 6)), found.history).tangent, mandel.stiffness(law.bulk, law.shear)
+        law.update(np.zeros((2, 6)), update.history).tangent, mandel.stiffness(law.bulk, law.shear)
     )
 
 

@@ -142,9 +142,9 @@ def test_two_layers_settle_under_their_weight_as_a_column(kind: str, laws: tuple
     low = np.maximum(depth, 0.7) - 0.7
     lower = (4.0e3 * 0.7 * (2.3 - low) + 0.5 * 9.0e3 * (2.3**2 - low**2)) / M[1]
     exact = -(upper + lower)
-    found = soil.field.total.reshape(-1, 3)
-    np.testing.assert_allclose(found[:, 2], exact, atol=1e-7 * np.abs(exact).max())
-    assert np.abs(found[:, :2]).max() < 1e-7 * np.abs(exact).max()
+    settlement = soil.field.total.reshape(-1, 3)
+    np.testing.assert_allclose(settlement[:, 2], exact, atol=1e-7 * np.abs(exact).max())
+    assert np.abs(settlement[:, :2]).max() < 1e-7 * np.abs(exact).max()
 
 
 def column_of(
@@ -193,9 +193,9 @@ def scene_with(layers: Any, **soil: Any) -> Any:
 
 
 def soil_scene(layers: Any, **soil: Any) -> SoilScene:
-    found = scene_from_mapping(scene_with(layers, **soil)).soil
-    assert found is not None
-    return found
+    made = scene_from_mapping(scene_with(layers, **soil)).soil
+    assert made is not None
+    return made
 
 
 def test_the_echo_of_a_layered_scene_is_a_scene() -> None:

@@ -197,8 +197,8 @@ GROUND = {"kind": "rigid", "level": 0.5, "contact_at": "axis"}
     ],
 )
 def test_warnings_about_waves_state_their_numbers(waves: Any, more: Any, words: str) -> None:
-    reported = list(wave_warnings(in_water({"surface_level": 100.0, "waves": waves, **more}, seabed=GROUND)))
-    assert any(words in line for line in reported), reported
+    warnings = list(wave_warnings(in_water({"surface_level": 100.0, "waves": waves, **more}, seabed=GROUND)))
+    assert any(words in line for line in warnings), warnings
 
 
 @pytest.mark.parametrize("waves", [AIRY, {"jonswap": {"Hs": 9.0, "Tp": 14.0}}])
@@ -207,5 +207,5 @@ def test_ordinary_waves_raise_no_doubt(waves: Any) -> None:
 
 
 def test_waves_in_a_static_scene_are_doubted() -> None:
-    reported = list(wave_warnings(in_water({"surface_level": 100.0, "waves": AIRY}, static("only"))))
-    assert any("no stage is dynamic" in line for line in reported)
+    warnings = list(wave_warnings(in_water({"surface_level": 100.0, "waves": AIRY}, static("only"))))
+    assert any("no stage is dynamic" in line for line in warnings)

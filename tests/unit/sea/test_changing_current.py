@@ -101,7 +101,7 @@ def test_a_floating_pipe_goes_with_the_water(coefficients: bool) -> None:
     """As heavy as the water that it displaces, it is accelerated by m + m_a as the water pushes by rho A + m_a."""
     history = [{"time": 1.0, "profile": [[0.0, 0.0, 0.0]]}, {"time": 5.0, "profile": [[0.0, 2.0, 0.0]]}]
     pipe = PIPE if coefficients else {key: PIPE[key] for key in ("outer_diameter", "mass", "EA", "EI")}
-    (reported,) = stage_histories(
+    (drift,) = stage_histories(
         riser_scene(
             dynamic(4.0, 0.1, scheme={"newmark": {"beta": 0.25, "gamma": 0.5}}),
             pipe=pipe,
@@ -113,10 +113,10 @@ def test_a_floating_pipe_goes_with_the_water(coefficients: bool) -> None:
             water={"current": {"history": history}},
         )
     )
-    gone = np.array([position[:, 0].mean() for position in reported.position])
-    s = np.clip((np.array(reported.t) - 1.0) / 4.0, 0.0, 1.0)
+    gone = np.array([position[:, 0].mean() for position in drift.position])
+    s = np.clip((np.array(drift.t) - 1.0) / 4.0, 0.0, 1.0)
     assert gone == pytest.approx(8.0 * (s**3 - 0.5 * s**4), abs=1e-3)
-    assert np.ptp(reported.position[-1][:, 0]) < 1e-9
+    assert np.ptp(drift.position[-1][:, 0]) < 1e-9
 
 
 HISTORY = [
@@ -127,8 +127,8 @@ HISTORY = [
 
 def test_a_scene_s_current_runs_on_the_waves_clock() -> None:
     scene = in_water({"current": {"history": HISTORY}})
-    found = [water_of(scene, stage) for stage in scene.stages]
-    values = [water(0.5, MIDWATER).velocity[0, 0] for water in found if water is not None]
+    flows = [water_of(scene, stage) for stage in scene.stages]
+    values = [water(0.5, MIDWATER).velocity[0, 0] for water in flows if water is not None]
     s = np.array([0.0, 0.5, 20.0, 20.5]) / 30.0
     expected = 0.6 - (3.0 * s**2 - 2.0 * s**3)
     assert values == pytest.approx(expected * [0.5, 1.0, 1.0, 1.0])
@@ -141,7 +141,7 @@ def test_a_scene_s_current_runs_on_the_waves_clock() -> None:
 
 
 @pytest.mark.parametrize(
-    ("current", "reported"),
+    ("current", "message"),
     [
         ({}, "water.current.profile: missing: profile is missing; give profile"),
         ({"profile": [[0.0, 1.0, 0.0]], "history": HISTORY}, "profile and history are both given"),
@@ -150,7 +150,7 @@ def test_a_scene_s_current_runs_on_the_waves_clock() -> None:
         ({"history": [HISTORY[0], HISTORY[1] | {"profile": []}]}, "water.current.history.1.profile: .* at least 1"),
     ],
 )
-def test_bad_input_is_reported_in_a_line(current: dict[str, Any], reported: str) -> None:
-    with pytest.raises(SceneError, match=reported) as raised:
+def test_bad_input_is_reported_in_a_line(current: dict[str, Any], message: str) -> None:
+    with pytest.raises(SceneError, match=message) as raised:
         in_water({"current": current})
     assert "\n" not in str(raised.value)

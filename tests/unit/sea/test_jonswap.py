@@ -104,8 +104,8 @@ def test_long_record_has_the_spectrum_that_was_asked_for(seed: int) -> None:
     w = 2.0 * np.pi * f / PEAK
     edges = quantiles(np.linspace(0.0, 1.0, 9), GAMMA)
     for low, high in pairwise(edges):
-        found = np.sum(density[(w >= low) & (w < high)]) * f[1]
-        assert found == pytest.approx(energy(low, high), rel=0.02)
+        content = np.sum(density[(w >= low) & (w < high)]) * f[1]
+        assert content == pytest.approx(energy(low, high), rel=0.02)
     width = np.count_nonzero(w < 0.06)
     peak = w[np.argmax(np.convolve(density, np.ones(width), "same"))]
     assert peak == pytest.approx(1.0, rel=0.02)

@@ -112,8 +112,8 @@ def test_froude_krylov_is_the_pressure_of_the_undisturbed_wave(tangent: Array) -
     for D in (2.0, 1.0):
         line = straight(tangent, D, 0.5)
         expected = pressure_force(tangent, D, 0.5, t)
-        found = force_on(line, loads(line, Sea(0.0, [airy()]), Cd=0.0, Ca=0.0), State.at_rest(t, line.size))
-        errors.append(np.linalg.norm(found - expected) / np.linalg.norm(expected))
+        force = force_on(line, loads(line, Sea(0.0, [airy()]), Cd=0.0, Ca=0.0), State.at_rest(t, line.size))
+        errors.append(np.linalg.norm(force - expected) / np.linalg.norm(expected))
     length = 2.0 * np.pi / wave(t)[0]
     assert errors[0] < 4.0 * (2.0 / length) ** 2
     assert errors[1] < 4.0 * (1.0 / length) ** 2
@@ -157,8 +157,8 @@ def test_loads_do_not_depend_on_the_frame_of_reference() -> None:
     at.line.nodal(moved.v)[:, :3] -= ship
     seas = (Sea(sample_water.LEVEL, [sample_water.general(under_way)]) for under_way in (0.0 * ship, ship))
     parts = [loads(at.line, sea, Cdt=0.2) for sea in seas]
-    found = [residual([part], s, ALL) for part, s in zip(parts, (state, moved), strict=True)]
-    assert found[1] == pytest.approx(found[0], rel=1e-11, abs=1e-10 * np.abs(found[0]).max())
+    forces = [residual([part], s, ALL) for part, s in zip(parts, (state, moved), strict=True)]
+    assert forces[1] == pytest.approx(forces[0], rel=1e-11, abs=1e-10 * np.abs(forces[0]).max())
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

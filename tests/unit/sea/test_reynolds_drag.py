@@ -56,18 +56,18 @@ def half_out(at: Sample) -> Morison:
 )
 def test_the_coefficient_is_linear_in_the_logarithm(Re: float, Cd: float) -> None:
     speed, tau = Re * NU / D, np.array([0.0, 0.0, 1.0])
-    found = law.tables_of(RHO, NU, np.array([D]), [CRISIS])
+    tables = law.tables_of(RHO, NU, np.array([D]), [CRISIS])
     v = np.array([0.6, 0.8, 0.0]) * speed + 3.0 * tau
-    force = resistance(found, v, tau)
+    force = resistance(tables, v, tau)
     expected = 0.5 * RHO * D * Cd * speed**2
     np.testing.assert_allclose(force, expected * np.array([0.6, 0.8, 0.0]), rtol=1e-12, atol=1e-12 * expected)
 
 
 def test_no_flow_no_drag() -> None:
-    found, none = law.tables_of(RHO, NU, np.array([D]), [CRISIS]), np.zeros(3)
+    tables, none = law.tables_of(RHO, NU, np.array([D]), [CRISIS]), np.zeros(3)
     tau = np.array([0.0, 0.0, 1.0])
-    assert not resistance(found, none, tau).any()
-    assert not np.any(derivatives(found, none, tau))
+    assert not resistance(tables, none, tau).any()
+    assert not np.any(derivatives(tables, none, tau))
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -82,8 +82,8 @@ def test_the_change_of_the_coefficient_is_in_the_tangent() -> None:
     """Along the flow d(Cd w^2)/dw = 2 Cd w + w dCd/dln Re, across it Cd w."""
     Re, slope = np.sqrt(8e10), (0.3 - 1.2) / np.log(2.0)
     w, half = Re * NU / D, 0.5 * RHO * D
-    found = law.tables_of(RHO, NU, np.array([D]), [CRISIS])
-    by_v, _ = derivatives(found, np.array([w, 0.0, 0.0]), np.array([0.0, 0.0, 1.0]))
+    tables = law.tables_of(RHO, NU, np.array([D]), [CRISIS])
+    by_v, _ = derivatives(tables, np.array([w, 0.0, 0.0]), np.array([0.0, 0.0, 1.0]))
     expected = half * w * np.diag([2.0 * 0.75 + slope, 0.75, 0.0])
     np.testing.assert_allclose(by_v, expected, rtol=1e-12, atol=1e-12 * half * w)
 
@@ -112,9 +112,9 @@ def test_a_scene_with_one_value_is_that_of_a_constant_coefficient() -> None:
         stage_histories(sea(drag))
         for drag in ({"by_reynolds": [[1e5, 1.1]]}, {"normal": 1.1}, {"by_reynolds": [[1e5, 1.1], [3e5, 0.4]]})
     )
-    for found, expected in zip(one, same, strict=True):
-        np.testing.assert_allclose(np.array(found.position), np.array(expected.position), rtol=0.0, atol=1e-9)
-        np.testing.assert_allclose(found.work, expected.work, rtol=1e-6, atol=1e-4)
+    for value, expected in zip(one, same, strict=True):
+        np.testing.assert_allclose(np.array(value.position), np.array(expected.position), rtol=0.0, atol=1e-9)
+        np.testing.assert_allclose(value.work, expected.work, rtol=1e-6, atol=1e-4)
     assert np.abs(np.array(drop[1].position) - np.array(one[1].position)).max() > 1e-3
 
 
@@ -138,7 +138,7 @@ def test_segments_without_a_table_have_none() -> None:
 
 
 @pytest.mark.parametrize(
-    ("drag", "reported"),
+    ("drag", "message"),
     [
         ({}, "the normal drag coefficient is missing"),
         ({"normal": 1.1, "by_reynolds": [[1e5, 1.1]]}, "given twice"),
@@ -147,6 +147,6 @@ def test_segments_without_a_table_have_none() -> None:
         ({"by_reynolds": []}, "by_reynolds"),
     ],
 )
-def test_a_table_that_is_none_is_reported(drag: Mapping, reported: str) -> None:
-    with pytest.raises(SceneError, match=reported):
+def test_a_table_that_is_none_is_reported(drag: Mapping, message: str) -> None:
+    with pytest.raises(SceneError, match=message):
         scene_from_mapping(sea(drag))

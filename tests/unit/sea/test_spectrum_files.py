@@ -33,8 +33,8 @@ def density(turn: float = 0.0) -> Array:
     each = 2.0 * math.pi * spectra.spectrum(2.0 * math.pi * FREQ, HS, TP, 3.3)
     mean = FROM + turn * np.linspace(0.0, 1.0, FREQ.size)
     spread = np.cos(np.radians(DIR[None] - mean[:, None]) / 2.0) ** (2.0 * S)
-    found: Array = each[:, None] * spread / (15.0 * spread.sum(axis=1, keepdims=True))
-    return found
+    values: Array = each[:, None] * spread / (15.0 * spread.sum(axis=1, keepdims=True))
+    return values
 
 
 def variables(efth: Array) -> Variables:
@@ -47,9 +47,9 @@ def scene(given: dict[str, Any], folder: Path, **more: Any) -> Scene:
 
 
 def drawn(given: dict[str, Any], folder: Path) -> Components:
-    found = components_of(scene(given, folder))
-    assert found is not None
-    return found
+    components = components_of(scene(given, folder))
+    assert components is not None
+    return components
 
 
 @pytest.mark.parametrize("turn", [0.0, 90.0])
@@ -71,8 +71,8 @@ def test_moments_of_a_sea_are_those_of_its_file(turn: float, tmp_path: Path) -> 
     for low, high, most in ((0.0, 1.0, 1e-3), (0.0, 0.12, 2e-3), (0.12, 1.0, 2e-3)):
         band, within = (f >= low) & (f < high), (fine >= low) & (fine < high)
         for part in (np.cos, np.sin):
-            found = np.sum((energy * part(waves.direction))[band])
-            assert found == pytest.approx(np.sum(asked(part(toward))[within]), abs=most * energy.sum())
+            moment = np.sum((energy * part(waves.direction))[band])
+            assert moment == pytest.approx(np.sum(asked(part(toward))[within]), abs=most * energy.sum())
 
 
 def test_height_and_peak(tmp_path: Path) -> None:
@@ -130,16 +130,16 @@ def test_radians_and_no_directions(tmp_path: Path) -> None:
 
 def test_a_sea_of_several_directions_is_no_plane_problem(tmp_path: Path) -> None:
     write_netcdf(tmp_path / "sea.nc", variables(density()))
-    found = scene({}, tmp_path)
-    assert resolved_dimension(found) == 3
+    sea = scene({}, tmp_path)
+    assert resolved_dimension(sea) == 3
     with pytest.raises(SceneError, match=r"water\.waves\.spectrum\.file"):
         scene({}, tmp_path, dimension=2)
-    (tmp_path / "scene.yaml").write_text(dump_scene(found))
-    assert read_scene(tmp_path / "scene.yaml") == found
+    (tmp_path / "scene.yaml").write_text(dump_scene(sea))
+    assert read_scene(tmp_path / "scene.yaml") == sea
 
 
 @pytest.mark.parametrize(
-    ("changed", "given", "reported"),
+    ("changed", "given", "message"),
     [
         ({}, {"at": {"time": 0}}, "efth has no dimension time"),
         ({}, {"direction_deg": 10.0}, "direction_deg: .*the file has directions of its own"),
@@ -152,18 +152,18 @@ def test_a_sea_of_several_directions_is_no_plane_problem(tmp_path: Path) -> None
         ({"efth": (("dir",), DIR)}, {}, "efth has no dimension freq"),
     ],
 )  # fmt: skip
-def test_files_that_are_no_sea(changed: Any, given: dict[str, Any], reported: str, tmp_path: Path) -> None:
-    found = {name: each for name, each in {**variables(density()), **changed}.items() if each is not None}
-    write_netcdf(tmp_path / "sea.nc", found)
-    with pytest.raises(SceneError, match=reported) as error:
+def test_files_that_are_no_sea(changed: Any, given: dict[str, Any], message: str, tmp_path: Path) -> None:
+    arrays = {name: each for name, each in {**variables(density()), **changed}.items() if each is not None}
+    write_netcdf(tmp_path / "sea.nc", arrays)
+    with pytest.raises(SceneError, match=message) as error:
         scene(given, tmp_path)
     assert "\n" not in str(error.value)
 
 
 @pytest.mark.parametrize(
-    ("content", "reported"), [(b"CDF\x01" + b"\0" * 40, "netCDF-3"), (b"no numbers", "can't be read")]
+    ("content", "message"), [(b"CDF\x01" + b"\0" * 40, "netCDF-3"), (b"no numbers", "can't be read")]
 )
-def test_other_files(content: bytes, reported: str, tmp_path: Path) -> None:
+def test_other_files(content: bytes, message: str, tmp_path: Path) -> None:
     (tmp_path / "sea.nc").write_bytes(content)
-    with pytest.raises(SceneError, match=reported):
+    with pytest.raises(SceneError, match=message):
         scene({}, tmp_path)

@@ -87,8 +87,8 @@ def test_surface_and_velocity_are_the_librarys(theory: str, H: float, h: float) 
     assert theirs.c == pytest.approx(wave.w / wave.k, rel=1e-6)
     s = np.linspace(0.0, wave.length, 41)
     elevation = np.asarray(theirs.surface_elevation(s, include_depth=False)).ravel()
-    found = sea(wave, phase=0.0)(0.0, along(s, 0.0 * s))
-    assert found.immersion == pytest.approx(elevation, abs=1e-6 * H)
+    motion = sea(wave, phase=0.0)(0.0, along(s, 0.0 * s))
+    assert motion.immersion == pytest.approx(elevation, abs=1e-6 * H)
     for z in (-wave.trough - 0.01, -0.7 * min(h, 40.0)):
         velocity = np.asarray(theirs.velocity(s, np.full_like(s, deep + z), 0.0, all_points_wet=True)).reshape(-1, 2)
         mine, _, across = turned(sea(wave, phase=0.0)(0.0, along(s, np.full_like(s, z))))
@@ -247,8 +247,8 @@ def test_a_scene_says_which_theory_it_takes_and_is_echoed(tmp_path: Path) -> Non
     sea = sea_of(scene)
     assert sea is not None
     assert sea.waves is not None
-    (reported,) = regular_wave_theory(sea.waves)
-    assert "fifth order: 160" in reported
+    (line,) = regular_wave_theory(sea.waves)
+    assert "fifth order: 160" in line
     assert list(wave_warnings(scene)) == []
     assert resolved_dimension(scene) == 2
     echo = tmp_path / "scene.yaml"
@@ -256,9 +256,9 @@ def test_a_scene_says_which_theory_it_takes_and_is_echoed(tmp_path: Path) -> Non
     assert read_scene(echo) == scene
     water = water_of(scene, scene.stages[1])
     assert water is not None
-    found = water(12.0, np.array([[10.0, 0.0, 60.0]]))
+    motion = water(12.0, np.array([[10.0, 0.0, 60.0]]))
     direct = Sea(100.0, [steady_flow(made("stokes", 8.0, math.inf), math.pi, 0.0, 100.0, 10.0, 0.0, 0.0)])
-    assert found.velocity == pytest.approx(direct(12.0, np.array([[10.0, 0.0, 60.0]])).velocity)
+    assert motion.velocity == pytest.approx(direct(12.0, np.array([[10.0, 0.0, 60.0]])).velocity)
 
 
 def test_a_vessel_follows_the_first_harmonic() -> None:
@@ -274,7 +274,7 @@ def test_stretching_is_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    ("depth", "given", "reported"),
+    ("depth", "given", "message"),
     [
         (
             100.0,
@@ -285,8 +285,8 @@ def test_stretching_is_refused() -> None:
         (9.0, {"height": 5.0, "theory": "stokes"}, "water.waves.regular.theory: stokes: Ursell's number"),
     ],
 )
-def test_what_can_not_be_is_reported_in_a_line(depth: float, given: dict[str, Any], reported: str) -> None:
+def test_what_can_not_be_is_reported_in_a_line(depth: float, given: dict[str, Any], message: str) -> None:
     scene = in_water({"surface_level": 100.0, "depth": depth, "waves": {"regular": {"period": 10.0} | given}})
-    with pytest.raises(SceneError, match=reported) as raised:
+    with pytest.raises(SceneError, match=message) as raised:
         water_of(scene, scene.stages[1])
     assert "\n" not in str(raised.value)

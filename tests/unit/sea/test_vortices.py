@@ -73,9 +73,9 @@ def test_the_force_acts_across_flow_and_pipe(phase: float) -> None:
     def force(v: Array) -> Array:
         return -resistance(push, v, TAU)
 
-    found = force(-U * ALONG_X)
-    np.testing.assert_allclose(found, [0.0, 0.5 * RHO * D * 1.2 * U**2 * np.cos(phase), 0.0], atol=1e-12)
-    np.testing.assert_allclose(force(-U * (ALONG_X + 2.0 * TAU)), found, rtol=1e-12, atol=1e-12)
+    computed = force(-U * ALONG_X)
+    np.testing.assert_allclose(computed, [0.0, 0.5 * RHO * D * 1.2 * U**2 * np.cos(phase), 0.0], atol=1e-12)
+    np.testing.assert_allclose(force(-U * (ALONG_X + 2.0 * TAU)), computed, rtol=1e-12, atol=1e-12)
     assert not force(-U * TAU).any()
 
 
@@ -84,8 +84,8 @@ def test_in_line_it_is_a_drag_that_swings(phase: float) -> None:
     """Along the flow across the pipe, 1/2 rho D C U^2 cos(phi); flow along the pipe does nothing."""
     push = Push(shedding(Cv=0.3).lift, np.full((2, 1, 1), phase), in_line=True)
     for along in (0.0, 2.0):
-        found = -resistance(push, -U * (ALONG_X + along * TAU), TAU)
-        np.testing.assert_allclose(found, 0.5 * RHO * D * 0.3 * U**2 * np.cos(phase) * ALONG_X, atol=1e-12)
+        computed = -resistance(push, -U * (ALONG_X + along * TAU), TAU)
+        np.testing.assert_allclose(computed, 0.5 * RHO * D * 0.3 * U**2 * np.cos(phase) * ALONG_X, atol=1e-12)
 
 
 def new_wake() -> law.Wake:
@@ -254,8 +254,8 @@ def scene(**more: Any) -> Mapping:
 def forces(**more: Any) -> dict[str, law.Shedding]:
     """Of the parts of the dynamic stage, by name."""
     assembly = built(scene(**more))
-    found: dict[str, Any] = {part.name: part for part in assembly.begin(assembly.scene.stages[1]).parts}
-    return {name: found[name].kernel_data().shed for name in (CROSS, IN_LINE) if name in found}
+    parts: dict[str, Any] = {part.name: part for part in assembly.begin(assembly.scene.stages[1]).parts}
+    return {name: parts[name].kernel_data().shed for name in (CROSS, IN_LINE) if name in parts}
 
 
 def test_each_direction_is_built_where_it_has_a_coefficient() -> None:
@@ -271,8 +271,8 @@ def test_in_line_vortices_lock_to_twice_the_frequencies_by_default() -> None:
     assert default.lift[0] == pytest.approx(0.5 * RHO * D * 0.2)
     assert (default.middle[0], default.width[0]) == pytest.approx((0.4, 0.1))
     given = {"coefficient": 0.2, "frequency": 0.3, "width": 0.02}
-    found = forces(vortex_force={"in_line": given})[IN_LINE]
-    assert (found.middle[0], found.width[0]) == (0.3, 0.02)
+    vortices = forces(vortex_force={"in_line": given})[IN_LINE]
+    assert (vortices.middle[0], vortices.width[0]) == (0.3, 0.02)
 
 
 def test_strakes_take_from_the_vortices_and_add_to_the_drag() -> None:
@@ -299,9 +299,9 @@ WRONG: list[tuple[dict[str, Any], str]] = [
 ]
 
 
-@pytest.mark.parametrize(("more", "reported"), WRONG)
-def test_what_can_not_be_is_reported(more: dict[str, Any], reported: str) -> None:
-    with pytest.raises(SceneError, match=reported):
+@pytest.mark.parametrize(("more", "message"), WRONG)
+def test_what_can_not_be_is_reported(more: dict[str, Any], message: str) -> None:
+    with pytest.raises(SceneError, match=message):
         scene_from_mapping(scene(**more))
 
 

@@ -95,15 +95,15 @@ def test_a_wavy_surface_is_followed_between_the_stations() -> None:
     k = 2.0 * np.pi / 12.0
     at = pipe(np.array([0.0, 0.0, LEVEL + 0.1]), np.array([1.0, 0.0, 0.0]), 5, 2)
     part = Buoyancy(FlowAtStations(at, Sea(LEVEL, [Ripple(k)])), dry_pipe(np.ones(5)), flat=False)
-    found = at.line.nodal(residual([part], State.at_rest(0.0, at.line.size)))[:, 1].sum()
+    buoyancy = at.line.nodal(residual([part], State.at_rest(0.0, at.line.size)))[:, 1].sum()
     expected = quad(lambda x: 1.0 - wet_share(0.2 * np.cos(k * x) - 0.1, D), 0.0, L, epsabs=1e-10, limit=200)[0]
-    assert found == pytest.approx(expected, rel=1e-4)
+    assert buoyancy == pytest.approx(expected, rel=1e-4)
 
 
 def test_lifting_a_pipe_out_of_the_water_takes_its_lost_weight() -> None:
     heights = np.linspace(-0.5, 0.9, 400)
-    found = [lost(pipe(np.array([0.0, 0.0, LEVEL + h]), np.array([1.0, 0.0, 0.0]), 3, 3)) for h in heights]
-    force, potential = np.array(found).T
+    works = [lost(pipe(np.array([0.0, 0.0, LEVEL + h]), np.array([1.0, 0.0, 0.0]), 3, 3)) for h in heights]
+    force, potential = np.array(works).T
     assert potential[0] == 0.0
     work = np.concatenate([[0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(heights))])
     assert work == pytest.approx(potential, abs=1e-5 * potential[-1])

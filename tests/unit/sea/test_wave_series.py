@@ -51,8 +51,8 @@ def sizes(waves: Components, h: float) -> WaterMotion:
     return WaterMotion(*(np.asarray(np.sum(values)) for values in sums))
 
 
-def errors(found: WaterMotion, expected: WaterMotion, size: WaterMotion) -> Array:
-    return np.array([np.abs(f - e).max() / s for f, e, s in zip(found, expected, size, strict=True)])
+def errors(motion: WaterMotion, expected: WaterMotion, size: WaterMotion) -> Array:
+    return np.array([np.abs(f - e).max() / s for f, e, s in zip(motion, expected, size, strict=True)])
 
 
 @pytest.mark.parametrize("stretching", ["wheeler", "vertical"])
@@ -65,8 +65,8 @@ def test_series_are_the_sums(seed: int, h: float, stretching: Stretching) -> Non
     waves, x = sea(h, Tp, count, seed, gamma, draw.uniform(-3.0, 3.0)), points(h, 100.0, seed)
     for ramp in (0.0, 80.0):
         t = draw.uniform(0.0, 80.0)
-        found, summed = (kind(waves, h, LEVEL, stretching, ramp)(t, x) for kind in KINDS)
-        assert errors(found, summed, sizes(waves, h)).max() < 1e-12
+        series, summed = (kind(waves, h, LEVEL, stretching, ramp)(t, x) for kind in KINDS)
+        assert errors(series, summed, sizes(waves, h)).max() < 1e-12
         assert np.abs(summed.velocity).max() > 1e-4 * sizes(waves, h).velocity
 
 
@@ -75,15 +75,15 @@ def test_crossing_waves_are_summed_by_direction(h: float) -> None:
     waves = sea(h, 8.0, 60, 5)
     waves = waves._replace(direction=np.random.default_rng(6).choice([-2.0, -0.1, 0.4, 1.7], 60))
     x = points(h, 100.0, 7)
-    found, summed = (kind(waves, h, LEVEL)(12.3, x) for kind in KINDS)
-    assert errors(found, summed, sizes(waves, h)).max() < 1e-12
+    series, summed = (kind(waves, h, LEVEL)(12.3, x) for kind in KINDS)
+    assert errors(series, summed, sizes(waves, h)).max() < 1e-12
 
 
 @pytest.mark.parametrize("h", DEPTHS)
 def test_far_away_and_after_hours_only_the_phases_round_off(h: float) -> None:
     waves, x = sea(h, 6.0, 200, 8), points(h, 5000.0, 9)
-    found, summed = (kind(waves, h, LEVEL)(HOURS, x) for kind in KINDS)
-    assert errors(found, summed, sizes(waves, h)).max() < 1e-10
+    series, summed = (kind(waves, h, LEVEL)(HOURS, x) for kind in KINDS)
+    assert errors(series, summed, sizes(waves, h)).max() < 1e-10
 
 
 @pytest.mark.parametrize("h", [np.inf, 300.0])
@@ -113,8 +113,8 @@ def test_nothing_hangs_on_what_was_evaluated_before() -> None:
         t, some = draw.uniform(0.0, 60.0), draw.permutation(len(x))[:50]
         used(draw.uniform(0.0, 60.0), x + draw.uniform(-5.0, 5.0, 3))
         new = Sea(LEVEL, [linear_waves(waves, 120.0, LEVEL, ramp=20.0)])
-        for found, expected in zip(used(t, x[some]), new(t, x), strict=True):
-            assert np.array_equal(found, expected[some])
+        for values, expected in zip(used(t, x[some]), new(t, x), strict=True):
+            assert np.array_equal(values, expected[some])
 
 
 def test_places_that_find_no_workspace_are_computed_again(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -124,8 +124,8 @@ def test_places_that_find_no_workspace_are_computed_again(monkeypatch: pytest.Mo
     field = linear_waves(waves, 120.0, LEVEL)
     assert field.series.cells.places.key.size == 3
     for _ in range(2):
-        for found, expected in zip(Sea(LEVEL, [field])(4.0, x), roomy, strict=True):
-            assert np.array_equal(found, expected)
+        for values, expected in zip(Sea(LEVEL, [field])(4.0, x), roomy, strict=True):
+            assert np.array_equal(values, expected)
 
 
 def test_stations_of_a_riser_share_few_places() -> None:

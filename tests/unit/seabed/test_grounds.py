@@ -31,18 +31,18 @@ def differences(ground: Ground, x: Array, h: float = 1e-5) -> tuple[Array, Array
 
 @pytest.mark.parametrize("name", GROUNDS)
 def test_derivatives_of_the_distance(name: str) -> None:
-    found = GROUNDS[name].distance(X)
+    distance = GROUNDS[name].distance(X)
     gradient, hessian = differences(GROUNDS[name], X)
-    assert found.gradient == pytest.approx(gradient, abs=1e-8)
-    exact = np.zeros((len(X), 3, 3)) if found.hessian is None else found.hessian
+    assert distance.gradient == pytest.approx(gradient, abs=1e-8)
+    exact = np.zeros((len(X), 3, 3)) if distance.hessian is None else distance.hessian
     assert exact == pytest.approx(hessian, abs=1e-7)
 
 
 def test_distance_from_a_slope_is_normal_to_it() -> None:
     uphill = np.array([np.cos(np.radians(50.0)), np.sin(np.radians(50.0)), np.tan(np.radians(12.0))])
     on_ground = SLOPE.point + 3.0 * uphill
-    found = SLOPE.distance(np.array([on_ground, on_ground + 2.0 * np.eye(3)[2]]))
-    assert found.value == pytest.approx([0.0, 2.0 * np.cos(np.radians(12.0))], abs=1e-12)
+    distance = SLOPE.distance(np.array([on_ground, on_ground + 2.0 * np.eye(3)[2]]))
+    assert distance.value == pytest.approx([0.0, 2.0 * np.cos(np.radians(12.0))], abs=1e-12)
 
 
 def test_profile_passes_through_its_points_and_goes_on_straight() -> None:

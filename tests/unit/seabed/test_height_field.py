@@ -36,13 +36,13 @@ def test_derivatives_of_the_distance(along: Array | None) -> None:
     if along is not None:
         axes = np.array([[*along, 0.0], [0.0, 0.0, 1.0]])
         points = X[:, :2] @ axes
-    found, h = ground.distance(points), 1e-5
-    assert found.hessian is not None
+    distance, h = ground.distance(points), 1e-5
+    assert distance.hessian is not None
     steps = [(ground.distance(points + h * e), ground.distance(points - h * e)) for e in axes]
     gradient = np.stack([(a.value - b.value) / (2.0 * h) for a, b in steps], axis=1)
     hessian = np.stack([(a.gradient - b.gradient) @ axes.T / (2.0 * h) for a, b in steps], axis=2)
-    assert found.gradient @ axes.T == pytest.approx(gradient, abs=1e-8)
-    assert axes @ found.hessian @ axes.T == pytest.approx(hessian, abs=1e-7)
+    assert distance.gradient @ axes.T == pytest.approx(gradient, abs=1e-8)
+    assert axes @ distance.hessian @ axes.T == pytest.approx(hessian, abs=1e-7)
     assert np.abs(hessian[:, 0, 0]).max() > 0.1
 
 
@@ -58,17 +58,17 @@ def test_heights_of_a_plane_are_the_plane() -> None:
     plane = Plane.sloping(np.array([1.0, 2.0, -3.0]), slope, towards)
     x, y = np.meshgrid(XS, YS, indexing="ij")
     z = -3.0 + np.tan(slope) * ((x - 1.0) * np.cos(towards) + (y - 2.0) * np.sin(towards))
-    found, known = HeightField(XS, YS, z).distance(X), plane.distance(X)
-    assert found.value == pytest.approx(known.value, abs=1e-11)
-    assert found.gradient == pytest.approx(np.asarray(known.gradient), abs=1e-11)
-    assert found.hessian == pytest.approx(np.zeros((60, 3, 3)), abs=1e-10)
+    field, known = HeightField(XS, YS, z).distance(X), plane.distance(X)
+    assert field.value == pytest.approx(known.value, abs=1e-11)
+    assert field.gradient == pytest.approx(np.asarray(known.gradient), abs=1e-11)
+    assert field.hessian == pytest.approx(np.zeros((60, 3, 3)), abs=1e-10)
 
 
 def test_heights_constant_across_are_the_profile() -> None:
     z = BUMPS[:, 0]
     profile = Profile(np.array([0.0, 0.0]), np.array([1.0, 0.0]), XS, z).distance(X)
-    found = HeightField(XS, YS, np.tile(z[:, None], (1, 4))).distance(X)
-    for one, other in zip(found, profile, strict=True):
+    field = HeightField(XS, YS, np.tile(z[:, None], (1, 4))).distance(X)
+    for one, other in zip(field, profile, strict=True):
         assert one == pytest.approx(np.asarray(other), abs=1e-10)
 
 
@@ -87,10 +87,10 @@ def test_a_cylinder_is_met_with_fourth_order(cells: int, bound: float) -> None:
     xy = s[:, None] * axis + ((R - over) * np.sin(angle))[:, None] * np.array([-0.6, 0.8])
     points = np.column_stack([xy, R - (R - over) * np.cos(angle)])
     z = R - np.sqrt(R**2 - (0.8 * y - 0.6 * x) ** 2)
-    found = HeightField(at, at, z).distance(points)
-    assert found.value == pytest.approx(np.full(30, over), abs=bound + over**2 / R)
+    distance = HeightField(at, at, z).distance(points)
+    assert distance.value == pytest.approx(np.full(30, over), abs=bound + over**2 / R)
     normal = np.column_stack([-np.sin(angle)[:, None] * np.array([-0.6, 0.8]), np.cos(angle)])
-    assert found.gradient == pytest.approx(normal, abs=20.0 * bound)
+    assert distance.gradient == pytest.approx(normal, abs=20.0 * bound)
 
 
 def grid_file(folder: Path, text: str) -> None:
@@ -112,24 +112,24 @@ def scene(folder: Path, text: str, **more: Any) -> Scene:
 
 
 def test_a_scene_reads_its_grid(tmp_path: Path) -> None:
-    found = scene(tmp_path, "Y [m]; z [cm]; x [m]\n5; 400; 30\n5; 100; 0\n-5; 200; 30\n-5; -100; 0\n")
-    assert ground_height(found, (15.0, 2.5, 0.0)) == pytest.approx(2.0)
-    assert found.seabed_level == pytest.approx(0.0)
-    assert resolved_dimension(found) == 3
+    ground = scene(tmp_path, "Y [m]; z [cm]; x [m]\n5; 400; 30\n5; 100; 0\n-5; 200; 30\n-5; -100; 0\n")
+    assert ground_height(ground, (15.0, 2.5, 0.0)) == pytest.approx(2.0)
+    assert ground.seabed_level == pytest.approx(0.0)
+    assert resolved_dimension(ground) == 3
     assert resolved_dimension(scene(tmp_path, HEADER + ROWS, dimension=2)) == 2
     folder = tmp_path / "results"
     folder.mkdir()
-    (folder / "scene.yaml").write_text(dump_scene(found), encoding="utf-8")
-    assert read_scene(folder / "scene.yaml") == found
+    (folder / "scene.yaml").write_text(dump_scene(ground), encoding="utf-8")
+    assert read_scene(folder / "scene.yaml") == ground
 
 
-@pytest.mark.parametrize(("reach", "reported"), [("31", 0), ("25", 1)])
-def test_a_free_end_beyond_the_grid_is_reported(reach: str, reported: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("reach", "count"), [("31", 0), ("25", 1)])
+def test_a_free_end_beyond_the_grid_is_reported(reach: str, count: int, tmp_path: Path) -> None:
     """30 m along x in three elements."""
     ends = {"start": prescribed(0.0, 0.0, 5.0, rotation="fixed"), "end": "free"}
-    found = scene(tmp_path, HEADER + ROWS.replace("30", reach), ends=ends)
-    warnings = [warning for warning in ground_warnings(build(found, MPI.COMM_SELF).riser) if "seabed.grid" in warning]
-    assert len(warnings) == reported
+    made = scene(tmp_path, HEADER + ROWS.replace("30", reach), ends=ends)
+    warnings = [warning for warning in ground_warnings(build(made, MPI.COMM_SELF).riser) if "seabed.grid" in warning]
+    assert len(warnings) == count
     assert lines_with(warnings, "1 nodes", "first shape", "arc 30 to 30 m") == warnings
 
 

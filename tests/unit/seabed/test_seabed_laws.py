@@ -121,9 +121,9 @@ def test_stored_is_what_comes_back_along_the_slope_with_which_the_pipe_turns(
     make: Callable[[float, float, float], NormalLaw],
 ) -> None:
     law, deep = make(D, SU, GRADIENT), np.array([0.07])
-    found = law.update(deep, law.initial_history((1,)))
-    force, slope = found.force[0], at(law, deep - 1e-9, found.history)[1][0]
-    assert found.stored[0] == pytest.approx(0.5 * force**2 / slope, rel=1e-5)
+    update = law.update(deep, law.initial_history((1,)))
+    force, slope = update.force[0], at(law, deep - 1e-9, update.history)[1][0]
+    assert update.stored[0] == pytest.approx(0.5 * force**2 / slope, rel=1e-5)
 
 
 def lost_per_cycle(law: NormalLaw, cycle: Array, times: int) -> Array:

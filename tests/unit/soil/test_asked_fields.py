@@ -80,9 +80,9 @@ def test_simple_shear_beyond_the_strength_leaves_what_is_not_elastic() -> None:
     for _ in range(4):
         take(clay, sheared(clay, gamma / 4.0).u.reshape(-1, 3))
     for name, xz in (("stress", SU), ("strain", 0.5 * gamma), ("plastic_strain", 0.5 * (gamma - SU / G))):
-        found, wanted = tensors(clay, name), np.zeros((3, 3))
+        strain, wanted = tensors(clay, name), np.zeros((3, 3))
         wanted[0, 2] = wanted[2, 0] = xz
-        np.testing.assert_allclose(found, np.broadcast_to(wanted, found.shape), atol=1e-9 * xz)
+        np.testing.assert_allclose(strain, np.broadcast_to(wanted, strain.shape), atol=1e-9 * xz)
 
 
 def test_strain_turns_with_the_material_and_no_turn_adds_to_it() -> None:
@@ -129,9 +129,9 @@ def test_an_image_has_shear_across_the_mirror_with_the_other_sign() -> None:
     points = np.array([[0.0, y, z] for y in (0.0, 1.0) for z in (0.0, 1.0)])
     rows = np.arange(9.0)[None, :] + 1.0
     unfolding = Unfolding.of(Mirror(1, 0.0, 1e-9), points, np.arange(4)[None, :])
-    found = unfolding.tensors(rows)
+    unfolded = unfolding.tensors(rows)
     signs = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0])
-    assert np.array_equal(found, np.concatenate([rows, signs * rows]))
+    assert np.array_equal(unfolded, np.concatenate([rows, signs * rows]))
     assert np.array_equal(Unfolding.of(None, points, np.arange(4)[None, :]).tensors(rows), rows)
 
 
@@ -142,7 +142,7 @@ def test_components_of_a_tensor_row_by_row() -> None:
 
 
 @pytest.mark.parametrize(
-    ("law", "name", "told"),
+    ("law", "name", "words"),
     [
         (CLAY, "effective_stress", ("von-mises", "total", "pore_pressure")),
         (LinearElastic(kind="linear-elastic", E=E, nu=NU), "effective_stress", ("linear-elastic",)),
@@ -151,8 +151,8 @@ def test_components_of_a_tensor_row_by_row() -> None:
         (ImportedLaw.model_validate(CAM), "pore", ("no pore", "preconsolidation")),
     ],
 )
-def test_fields_that_are_not_known_are_refused(law: SoilLaw, name: str, told: tuple[str, ...]) -> None:
-    with pytest.raises(SceneError, match=telling("output.soil_fields", *told)):
+def test_fields_that_are_not_known_are_refused(law: SoilLaw, name: str, words: tuple[str, ...]) -> None:
+    with pytest.raises(SceneError, match=telling("output.soil_fields", *words)):
         soil(law, name)
 
 
@@ -162,8 +162,8 @@ def scene(**changed: Any) -> Mapping:
 
 def test_a_scene_asks_for_them_and_needs_soil(tmp_path: Path) -> None:
     asked = {"soil_fields": ["strain", "histories"]}
-    found = scene_from_mapping(scene(output=asked))
-    assert found.output.soil_fields == ("strain", "histories")
+    made = scene_from_mapping(scene(output=asked))
+    assert made.output.soil_fields == ("strain", "histories")
     without = scene(output=asked)
     del without["soil"]
     with pytest.raises(SceneError, match=telling("output.soil_fields", "no soil")):

@@ -56,7 +56,7 @@ class Taken:
 
     def __init__(self, mapping: Mapping) -> None:
         self.assembly = built(mapping)
-        self.reported = list[dict[str, Array]]()
+        self.records = list[dict[str, Array]]()
         self.touched = list[int]()
         before = State.at_rest(0.0, self.assembly.size)
         with before_commit(self._tell):
@@ -65,12 +65,12 @@ class Taken:
         soil = soil_under(self.assembly).recovered()
         assert soil is not None
         fields = soil.output_fields()
-        self.reported.append({"displacement": fields.displacement, "von Mises": fields.von_mises})
+        self.records.append({"displacement": fields.displacement, "von Mises": fields.von_mises})
 
     def _tell(self, system: System, step: AcceptedStep) -> None:
         state, contact, line = step.solution.state, soil_under(self.assembly).contact, self.assembly.riser.line
         assert contact is not None
-        self.reported.append(
+        self.records.append(
             {
                 "positions": line.positions3(state),
                 "force on the riser": contact.force_on_riser(state),
@@ -94,20 +94,20 @@ SIZED_AS = dict.fromkeys(("soil's work", "all work", "braking"), "strain energy"
 
 
 @cache
-def taken(contact: str, kind: str, dimension: int, soil: str) -> Taken:
+def steps_of(contact: str, kind: str, dimension: int, soil: str) -> Taken:
     return Taken(scene(contact, kind, dimension, soil))
 
 
 @pytest.mark.parametrize(("contact", "kind", "dimension"), CASES)
 def test_the_answer_is_that_of_the_whole_soil(contact: str, kind: str, dimension: int) -> None:
-    whole, condensed = (taken(contact, kind, dimension, soil) for soil in ("whole", "condensed"))
+    whole, condensed = (steps_of(contact, kind, dimension, soil) for soil in ("whole", "condensed"))
     assert soil_under(whole.assembly).condensed is None
     assert soil_under(condensed.assembly).condensed is not None
-    assert len(whole.reported) == len(condensed.reported)
+    assert len(whole.records) == len(condensed.records)
     sizes = {
-        key: max(float(np.abs(reported[key]).max()) for reported in whole.reported if key in reported) for key in SIZED
+        key: max(float(np.abs(record[key]).max()) for record in whole.records if key in record) for key in SIZED
     }
-    for wanted, got in zip(whole.reported, condensed.reported, strict=True):
+    for wanted, got in zip(whole.records, condensed.records, strict=True):
         for key, value in wanted.items():
             size = sizes[SIZED_AS.get(key, key)]
             assert np.abs(got[key] - value).max() < SAME * size, key
@@ -115,7 +115,7 @@ def test_the_answer_is_that_of_the_whole_soil(contact: str, kind: str, dimension
 
 
 def test_few_dofs_are_solved_for() -> None:
-    case = taken("surface", "tet", 2, "condensed")
+    case = steps_of("surface", "tet", 2, "condensed")
     soil = soil_under(case.assembly)
     assert soil.condensed is not None
     top = soil.condensed.top
@@ -124,7 +124,7 @@ def test_few_dofs_are_solved_for() -> None:
 
 
 def test_its_energy_is_that_of_the_soil_recovered() -> None:
-    case = taken("surface", "tet", 2, "condensed")
+    case = steps_of("surface", "tet", 2, "condensed")
     soil, condensed = soil_under(case.assembly).recovered(), soil_under(case.assembly).condensed
     assert soil is not None
     assert condensed is not None
@@ -194,12 +194,12 @@ def test_a_force_where_none_was_expected_is_noticed_and_solved_for() -> None:
     after = run_stage(case, move, before, Watcher(), Timer.new())
     assert after.t > 0.0
     assert not condensed.outgrown
-    undisturbed = taken("surface", "hex", 2, "whole")
+    undisturbed = steps_of("surface", "hex", 2, "whole")
     np.testing.assert_allclose(case.riser.line.x, undisturbed.assembly.riser.line.x, rtol=0.0, atol=1e-8)
 
 
 def test_a_saved_state_is_taken_over() -> None:
-    case, anew = taken("surface", "tet", 2, "condensed"), built(scene("surface", "tet", 2, "condensed"))
+    case, anew = steps_of("surface", "tet", 2, "condensed"), built(scene("surface", "tet", 2, "condensed"))
     stage = case.assembly.scene.stages[0]
     models = [assembly.begin(stage) for assembly in (case.assembly, anew)]
     restore_all(owners(models[1]), gathered(owners(models[0])))
@@ -211,8 +211,8 @@ def test_a_saved_state_is_taken_over() -> None:
 def _fields(assembly: Assembly) -> tuple[Array, Array]:
     soil = soil_under(assembly).recovered()
     assert soil is not None
-    found = soil.output_fields()
-    return found.displacement, found.von_mises
+    fields = soil.output_fields()
+    return fields.displacement, fields.von_mises
 
 
 def reason(mapping: Mapping, ranks: int = 1) -> str:

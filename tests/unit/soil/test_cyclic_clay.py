@@ -59,19 +59,19 @@ def drive(law: CyclicClay | Overlay, strains: Array) -> tuple[Array, Array]:
     """Shear stress at the ends of increments from one shear strain to the next, and the dissipation in each [J/m3]."""
     history, before, stress, lost = law.start(), 0.0, list[float](), list[float]()
     for strain in strains:
-        found, old = law.update(shear(strain - before), history), history
-        lost.append(float(dissipation(law, shear(strain - before), old, found.stored, found.elastic)[0]))
-        stress.append(float(found.stress[0, 4]) / np.sqrt(2.0))
-        history, before = found.history, float(strain)
+        update, old = law.update(shear(strain - before), history), history
+        lost.append(float(dissipation(law, shear(strain - before), old, update.stored, update.elastic)[0]))
+        stress.append(float(update.stress[0, 4]) / np.sqrt(2.0))
+        history, before = update.history, float(strain)
     return np.array(stress), np.array(lost)
 
 
 def dissipation(law: CyclicClay | Overlay, increment: Array, history: Array, stored: Array, elastic: Array) -> Array:
     """Work of the stress at the increment's end less what is stored of it, per volume (n,)."""
     rest = law.update(np.zeros_like(increment), history)
-    found = law.update(increment, history)
+    update = law.update(increment, history)
     by_initial = mandel.product(law.initial, elastic - rest.elastic)
-    return np.asarray(mandel.product(found.stress, increment) - (stored - rest.stored) - by_initial)
+    return np.asarray(mandel.product(update.stress, increment) - (stored - rest.stored) - by_initial)
 
 
 @LAWS
@@ -81,16 +81,16 @@ def test_the_tangent_is_that_of_the_stress(make: type, K0: float) -> None:
     history = law.update(4e-3 * rng.standard_normal((30, 6)), law.start()).history
     for size in (1e-5, 1e-3, 2e-2):
         increment = size * rng.standard_normal((30, 6))
-        found, h = law.update(increment, history), 1e-7
+        update, h = law.update(increment, history), 1e-7
         for j in range(6):
             step = h * np.eye(6)[j]
             ahead, behind = (law.update(increment + sign * step, history).stress for sign in (1.0, -1.0))
-            off = np.abs(found.tangent[:, :, j] - (ahead - behind) / (2.0 * h)) / G0
+            off = np.abs(update.tangent[:, :, j] - (ahead - behind) / (2.0 * h)) / G0
             assert np.median(off) < 1e-7
             assert np.quantile(off, 0.9) < 1e-4  # elements that start to yield within the difference
         elastic = mandel.stiffness(law.bulk, law.shear)
-        assert np.abs(found.tangent - elastic).max() > 0.1 * G0
-        symmetric = np.abs(found.tangent - np.swapaxes(found.tangent, 1, 2)).max() < 1e-10 * G0
+        assert np.abs(update.tangent - elastic).max() > 0.1 * G0
+        symmetric = np.abs(update.tangent - np.swapaxes(update.tangent, 1, 2)).max() < 1e-10 * G0
         assert symmetric or not law.symmetric
 
 
@@ -100,10 +100,10 @@ def test_the_strength_is_su_in_all_directions(make: type) -> None:
     direction = mandel.deviator(rng.standard_normal((200, 6)))
     history = law.start()
     for _ in range(400):
-        found = law.update(2e-2 * direction, history)
-        history = found.history
-    np.testing.assert_allclose(mandel.von_mises(found.stress), law.limit, rtol=1e-6)
-    assert law.overstress(found.stress).max() <= 1.0 + 1e-10
+        update = law.update(2e-2 * direction, history)
+        history = update.history
+    np.testing.assert_allclose(mandel.von_mises(update.stress), law.limit, rtol=1e-6)
+    assert law.overstress(update.stress).max() <= 1.0 + 1e-10
     assert np.all(history[:, law.columns.index(PLASTIC_STRAIN)] > 0.1)
 
 
@@ -113,24 +113,24 @@ def test_random_paths_stay_inside_and_only_take_work(make: type) -> None:
     history = law.start()
     for step in range(60):
         increment = 10.0 ** rng.uniform(-7.0, -0.5, (500, 1)) * rng.standard_normal((500, 6))
-        found = law.update(increment, history)
-        assert np.isfinite(found.history).all()
-        assert np.isfinite(found.tangent).all()
-        assert law.overstress(found.stress).max() <= 1.0 + 1e-10, step
-        lost = dissipation(law, increment, history, found.stored, found.elastic)
-        scale = np.abs(found.stored) + mandel.product(np.abs(found.stress), np.abs(increment)) + 1e-9
+        update = law.update(increment, history)
+        assert np.isfinite(update.history).all()
+        assert np.isfinite(update.tangent).all()
+        assert law.overstress(update.stress).max() <= 1.0 + 1e-10, step
+        lost = dissipation(law, increment, history, update.stored, update.elastic)
+        scale = np.abs(update.stored) + mandel.product(np.abs(update.stress), np.abs(increment)) + 1e-9
         assert np.min(lost / scale) > -1e-10, step
-        history = found.history
+        history = update.history
 
 
 @LAWS
 def test_a_start_under_stress_is_at_rest(make: type) -> None:
     law = make(5, 0.8)
-    found = law.update(np.zeros((5, 6)), law.start())
-    np.testing.assert_allclose(found.stress, law.initial, atol=1e-9)
-    np.testing.assert_allclose(found.stored, 0.0, atol=1e-9)
-    assert not found.elastic.any()
-    np.testing.assert_allclose(law.start(), found.history, atol=1e-9)
+    update = law.update(np.zeros((5, 6)), law.start())
+    np.testing.assert_allclose(update.stress, law.initial, atol=1e-9)
+    np.testing.assert_allclose(update.stored, 0.0, atol=1e-9)
+    assert not update.elastic.any()
+    np.testing.assert_allclose(law.start(), update.history, atol=1e-9)
 
 
 def test_kinematic_hardening_in_shear_follows_its_closed_form() -> None:
@@ -182,9 +182,9 @@ def test_points_in_one_line_are_no_corners() -> None:
 @LAWS
 def test_small_strain_leaves_no_plastic_strain(make: type) -> None:
     law = make()
-    found = law.update(shear(0.02 * SU / G0), law.start())
-    assert not found.history[:, law.columns.index(PLASTIC_STRAIN)].max() > 1e-18
-    np.testing.assert_allclose(found.tangent, mandel.stiffness(law.bulk, law.shear), rtol=1e-12, atol=1e-9 * G0)
+    update = law.update(shear(0.02 * SU / G0), law.start())
+    assert not update.history[:, law.columns.index(PLASTIC_STRAIN)].max() > 1e-18
+    np.testing.assert_allclose(update.tangent, mandel.stiffness(law.bulk, law.shear), rtol=1e-12, atol=1e-9 * G0)
 
 
 @LAWS
@@ -193,10 +193,10 @@ def test_plastic_strain_in_shear_is_what_the_stress_leaves_of_the_strain(make: t
     law = make()
     history, slip = law.start(), law.columns.index(PLASTIC_STRAIN)
     for strain in np.linspace(0.0, 0.05, 51)[1:]:
-        found = law.update(shear(1e-3), history)
-        history = found.history
-        left = strain - found.stress[0, 4] / np.sqrt(2.0) / law.shear[0]
-        assert history[0, slip] == pytest.approx(left / np.sqrt(3.0), rel=1e-9)
+        update = law.update(shear(1e-3), history)
+        history = update.history
+        remaining = strain - update.stress[0, 4] / np.sqrt(2.0) / law.shear[0]
+        assert history[0, slip] == pytest.approx(remaining / np.sqrt(3.0), rel=1e-9)
     assert history[0, slip] > 0.02
 
 
@@ -206,10 +206,10 @@ def test_kinematic_hardening_keeps_the_work_of_its_backstress() -> None:
     """
     law, history = kinematic(share=0.25), kinematic(share=0.25).start()
     for _ in range(200):
-        found = law.update(shear(1e-3), history)
-        history = found.history
+        update = law.update(shear(1e-3), history)
+        history = update.history
     elastic, hardened = SU**2 / (2.0 * G0), (0.75 * np.sqrt(3.0) * SU) ** 2 / (2.0 * OVER_SU * SU)
-    assert found.stored[0] == pytest.approx(elastic + hardened, rel=1e-6)
+    assert update.stored[0] == pytest.approx(elastic + hardened, rel=1e-6)
 
 
 @pytest.mark.parametrize("amplitude", [pytest.param(3e-4, marks=pytest.mark.verify), 3e-3, 3e-2])
@@ -243,7 +243,7 @@ def test_closed_loops_of_kinematic_hardening_are_stable() -> None:
 
 
 @pytest.mark.parametrize(
-    ("key", "value", "reported"),
+    ("key", "value", "message"),
     [
         ("curve", [[1e-3, 0.5], [2e-3, 0.8]], "ever less steeply"),
         ("curve", [[1e-3, 0.5], [4e-3, 0.1]], "must rise"),
@@ -252,10 +252,10 @@ def test_closed_loops_of_kinematic_hardening_are_stable() -> None:
         ("elastic_share", 1.0, "no such key"),
     ],
 )
-def test_wrong_constants_are_reported(key: str, value: object, reported: str) -> None:
+def test_wrong_constants_are_reported(key: str, value: object, message: str) -> None:
     scene = touchdown()
     scene["soil"]["law"] = {"kind": "iwan", "su": 600.0, "E_over_su": 300.0, key: value}
-    with pytest.raises(SceneError, match=reported):
+    with pytest.raises(SceneError, match=message):
         scene_from_mapping(scene)
 
 

@@ -80,9 +80,9 @@ def test_a_cache_that_cannot_be_written_is_replaced_and_reported(
     monkeypatch.setattr(compiled, "FOLDER", tmp_path / "kernels")
     assert nodes_of("hex", 1).owned == 5 * 3 * 3
     assert bool(list((tmp_path / "kernels" / "fenics").glob("libffcx_*.so"))) == COMPILES
-    (reported,) = capfd.readouterr().err.splitlines()
-    assert str(tmp_path / "file") in reported
-    assert reported.endswith(f"{tmp_path / 'kernels' / 'fenics'} is used")
+    (line,) = capfd.readouterr().err.splitlines()
+    assert str(tmp_path / "file") in line
+    assert line.endswith(f"{tmp_path / 'kernels' / 'fenics'} is used")
 
 
 def test_first_compilation_is_silent(tmp_path: Path) -> None:

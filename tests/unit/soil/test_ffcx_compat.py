@@ -46,9 +46,9 @@ def test_without_a_compiler_one_line_says_so(tmp_path: Path, monkeypatch: pytest
     monkeypatch.setattr(compiled, "FOLDER", tmp_path)
     (tmp_path / "announced").touch()
     monkeypatch.setenv("CC", "no-such-compiler")
-    with pytest.raises(RiserSoilError, match=r"no-such-compiler.*install gcc") as found:
+    with pytest.raises(RiserSoilError, match=r"no-such-compiler.*install gcc") as error:
         cell_kernel(form())
-    assert "\n" not in str(found.value)
+    assert "\n" not in str(error.value)
     assert not machine_code(tmp_path)
     monkeypatch.delenv("CC")
     cell_kernel(form())

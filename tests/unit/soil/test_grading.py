@@ -24,14 +24,14 @@ def test_doubling() -> None:
 @pytest.mark.parametrize(("first", "last"), [(0.2, 2.0), (2.0, 0.2), (0.5, 0.500001), (0.03, 7.0), (1.0, 1.0)])
 @pytest.mark.parametrize("length", [0.9, 13.0, 148.0])
 def test_a_geometric_series_of_the_given_length(length: float, first: float, last: float) -> None:
-    found = graded_lengths(length, first, last)
-    n = len(found)
-    assert sum(found) == pytest.approx(length, rel=1e-13)
+    lengths = graded_lengths(length, first, last)
+    n = len(lengths)
+    assert sum(lengths) == pytest.approx(length, rel=1e-13)
     if n > 1:
         ratio = (last / first) ** (1.0 / (n - 1))
-        assert [b / a for a, b in pairwise(found)] == pytest.approx([ratio] * (n - 1), rel=1e-12)
-        assert (1.0 - 1.0 / n if n > 2 else 0.0) <= found[0] / first <= 1.0 + 1e-9
-        assert found[-1] / last == pytest.approx(found[0] / first, rel=1e-12)
+        assert [b / a for a, b in pairwise(lengths)] == pytest.approx([ratio] * (n - 1), rel=1e-12)
+        assert (1.0 - 1.0 / n if n > 2 else 0.0) <= lengths[0] / first <= 1.0 + 1e-9
+        assert lengths[-1] / last == pytest.approx(lengths[0] / first, rel=1e-12)
 
 
 @pytest.mark.parametrize("length", [8.0, 8.1, 0.3, 0.5])

@@ -51,9 +51,9 @@ def within(mesh: HarmonicMesh, radius: float) -> BoolArray:
 def test_what_is_undisturbed_stays(kind: Any, more: Any) -> None:
     """A trench with its slopes included."""
     mesh = mesh_of(kind, **more)
-    found, made = mesh.renewed(mesh.first, within(mesh, 0.8), FAR)
+    renewed, made = mesh.renewed(mesh.first, within(mesh, 0.8), FAR)
     assert made.sum() > within(mesh, 0.8).sum()
-    np.testing.assert_allclose(found, mesh.first, atol=1e-12)
+    np.testing.assert_allclose(renewed, mesh.first, atol=1e-12)
 
 
 def drawn(mesh: HarmonicMesh, size: float) -> Array:
@@ -68,21 +68,21 @@ def test_nodes_that_were_drawn_aside_come_back(kind: Any) -> None:
     """Cells come back to nearly what they were; the surface keeps the volume below it, the rest its nodes."""
     mesh = mesh_of(kind)
     points = drawn(mesh, 0.3)
-    found, made = mesh.renewed(points, within(mesh, 0.8), FAR)
-    assert strain(mesh, found) < 0.5 * strain(mesh, points)
-    assert volume(mesh, found) == pytest.approx(volume(mesh, points), rel=2.5e-5)
-    np.testing.assert_array_equal(found[~made], points[~made])
-    aside = np.abs(found - mesh.first)[made, :2].max()
+    renewed, made = mesh.renewed(points, within(mesh, 0.8), FAR)
+    assert strain(mesh, renewed) < 0.5 * strain(mesh, points)
+    assert volume(mesh, renewed) == pytest.approx(volume(mesh, points), rel=2.5e-5)
+    np.testing.assert_array_equal(renewed[~made], points[~made])
+    aside = np.abs(renewed - mesh.first)[made, :2].max()
     assert aside < 0.25 * np.abs(points - mesh.first)[made, :2].max()
 
 
 def test_a_side_stays_plane() -> None:
     mesh = mesh_of("tet")
     side = mesh.first[:, 1] > 1.5 - 1e-9
-    points = mesh.first + 0.05 * np.sin(3.0 * mesh.first[:, :1]) * ~mesh.held
-    found, _ = mesh.renewed(points, side, FAR)
-    np.testing.assert_array_equal(found[side, 1], mesh.first[side, 1])
-    assert np.abs(found[side] - points[side]).max() > 0.005
+    points = mesh.first + 0.05 * np.sin(3.0 * mesh.first[:, :1]) * ~mesh.fixed
+    renewed, _ = mesh.renewed(points, side, FAR)
+    np.testing.assert_array_equal(renewed[side, 1], mesh.first[side, 1])
+    assert np.abs(renewed[side] - points[side]).max() > 0.005
 
 
 def test_nodes_at_the_pipe_keep_their_gap_and_are_not_raised() -> None:
@@ -96,11 +96,11 @@ def test_nodes_at_the_pipe_keep_their_gap_and_are_not_raised() -> None:
         return np.column_stack([at[:, :2], np.where(gaps < 0.1, level - gaps, at[:, 2])])
 
     plane = Pressing(gaps=lambda at: level - at[:, 2], brought_to=brought_to, clear=0.1)
-    found, made = mesh.renewed(points, within(mesh, 0.8), plane)
+    renewed, made = mesh.renewed(points, within(mesh, 0.8), plane)
     top = np.zeros(len(points), dtype=bool)
     top[mesh.facets] = True
     pressed = asked[0] < 0.1
-    np.testing.assert_allclose(level - found[made & top, 2][pressed], asked[0][pressed], atol=1e-12)
+    np.testing.assert_allclose(level - renewed[made & top, 2][pressed], asked[0][pressed], atol=1e-12)
     assert 0 < pressed.sum() < pressed.size
 
 
@@ -108,6 +108,6 @@ def test_a_mesh_that_would_fold_is_kept() -> None:
     mesh = mesh_of("tet")
     points = drawn(mesh, 0.3)
     below = FAR._replace(brought_to=lambda at, _: at - np.array([0.0, 0.0, 0.4]))
-    found, made = mesh.renewed(points, within(mesh, 0.8), below)
+    renewed, made = mesh.renewed(points, within(mesh, 0.8), below)
     assert not made.any()
-    np.testing.assert_array_equal(found, points)
+    np.testing.assert_array_equal(renewed, points)

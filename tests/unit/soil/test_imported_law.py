@@ -141,12 +141,12 @@ def test_columns_modulus_and_energy_follow_from_an_update_alone(own: Write) -> N
     law = own(ELASTIC, E=E)
     depth, initial = points()
     formula, strain = law.at_points(depth, initial), strains(40)
-    found = formula.update(strain, formula.update(0.5 * strain, formula.start()).history)
+    update = formula.update(strain, formula.update(0.5 * strain, formula.start()).history)
     change = 1.5 * strain @ mandel.stiffness(np.array([LAME + 2.0 * MU / 3.0]), np.array([MU]))[0]
-    np.testing.assert_allclose(found.stress, initial + change, rtol=1e-12)
-    np.testing.assert_allclose(found.stored, 0.5 * mandel.product(change, 1.5 * strain), rtol=1e-12)
-    np.testing.assert_allclose(found.elastic, 1.5 * strain, rtol=1e-10, atol=1e-15)
-    assert np.all(found.history[:, 6] == 2.0)
+    np.testing.assert_allclose(update.stress, initial + change, rtol=1e-12)
+    np.testing.assert_allclose(update.stored, 0.5 * mandel.product(change, 1.5 * strain), rtol=1e-12)
+    np.testing.assert_allclose(update.elastic, 1.5 * strain, rtol=1e-10, atol=1e-15)
+    assert np.all(update.history[:, 6] == 2.0)
     assert law.surface_modulus(0.3) == pytest.approx(E, rel=1e-12)
     assert formula.symmetric
     assert not formula.by_rate
@@ -160,14 +160,14 @@ def test_an_evaluate_of_either_order_of_components(own: Write, xz_last: bool) ->
         own(CONSTITUTIVE, parameters={"E": E, "nu": NU}, xz_last=xz_last).at_points(depth, initial),
         strains(40),
     )
-    found = formula.update(strain, formula.start(), 0.25)
+    update = formula.update(strain, formula.start(), 0.25)
     C = mandel.stiffness(np.array([LAME + 2.0 * MU / 3.0]), np.array([MU]))[0]
     C[5, 5] *= 3.0
-    np.testing.assert_allclose(found.stress, initial + strain @ C, rtol=1e-12)
-    np.testing.assert_allclose(found.tangent, np.broadcast_to(C, (40, 6, 6)), rtol=1e-12)
+    np.testing.assert_allclose(update.stress, initial + strain @ C, rtol=1e-12)
+    np.testing.assert_allclose(update.tangent, np.broadcast_to(C, (40, 6, 6)), rtol=1e-12)
     assert formula.columns == (*STRESS, *(f"total_{place}" for place in PLACES), "count", "pair_0", "pair_1")
-    np.testing.assert_allclose(found.history[:, 6:12], strain, rtol=1e-12)
-    assert np.all(found.history[:, 12:] == [1.0, 0.0, 0.25])
+    np.testing.assert_allclose(update.history[:, 6:12], strain, rtol=1e-12)
+    assert np.all(update.history[:, 12:] == [1.0, 0.0, 0.25])
     assert formula.by_rate
 
 
@@ -186,16 +186,16 @@ def test_stress_and_moduli_of_an_energy_are_its_derivatives(own: Write) -> None:
     depth, initial = points()
     formula = own(ENERGY, E=E, nu=NU, softens_at=limit, grows=grows).at_points(depth, initial)
     first, strain = strains(40), strains(40, seed=5)
-    found = formula.update(strain, formula.update(first, formula.start()).history)
+    update = formula.update(strain, formula.update(first, formula.start()).history)
     total, deeper = first + strain, 1.0 + grows * depth
     K, e = LAME + 2.0 * MU / 3.0, mandel.deviator(total)
     root = np.sqrt(1.0 + 2.0 * mandel.product(e, e) / limit**2)
     stress = 3.0 * K * mandel.mean(total)[:, None] * mandel.UNIT + 2.0 * MU * e / root[:, None]
     energy = 4.5 * K * mandel.mean(total) ** 2 + MU * limit**2 * (root - 1.0)
-    np.testing.assert_allclose(found.stress - initial, deeper[:, None] * stress, rtol=1e-10)
-    np.testing.assert_allclose(found.stored, deeper * energy, rtol=1e-10)
-    np.testing.assert_allclose(found.elastic, total, rtol=1e-14)
-    np.testing.assert_allclose(found.history[:, 6:], total, rtol=1e-14)
+    np.testing.assert_allclose(update.stress - initial, deeper[:, None] * stress, rtol=1e-10)
+    np.testing.assert_allclose(update.stored, deeper * energy, rtol=1e-10)
+    np.testing.assert_allclose(update.elastic, total, rtol=1e-14)
+    np.testing.assert_allclose(update.history[:, 6:], total, rtol=1e-14)
     slopes = np.empty((40, 6, 6))
     for j in range(6):
         ahead, behind = (
@@ -203,7 +203,7 @@ def test_stress_and_moduli_of_an_energy_are_its_derivatives(own: Write) -> None:
             for h in (1e-7, -1e-7)
         )
         slopes[:, :, j] = (ahead.stress - behind.stress) / 2e-7
-    np.testing.assert_allclose(found.tangent, slopes, atol=1e-6 * E)
+    np.testing.assert_allclose(update.tangent, slopes, atol=1e-6 * E)
 
 
 def test_an_energy_gives_back_all_that_it_took(own: Write) -> None:
@@ -212,10 +212,10 @@ def test_an_energy_gives_back_all_that_it_took(own: Write) -> None:
     formula = own(ENERGY, E=E, nu=NU, softens_at=1e-3).at_points(depth, initial)
     history = formula.start()
     for seed, sign in ((1, 1.0), (2, 1.0), (2, -1.0), (1, -1.0)):
-        found = formula.update(sign * strains(40, seed), history)
-        history = found.history
-    np.testing.assert_allclose(found.stress, initial, atol=1e-9 * E)
-    np.testing.assert_allclose(found.stored, 0.0, atol=1e-12 * E)
+        update = formula.update(sign * strains(40, seed), history)
+        history = update.history
+    np.testing.assert_allclose(update.stress, initial, atol=1e-9 * E)
+    np.testing.assert_allclose(update.stored, 0.0, atol=1e-12 * E)
     assert random_paths(formula, initial, 10, seed=3) == 0.0
 
 
@@ -237,10 +237,10 @@ def test_the_program_s_clay_by_way_of_a_file_is_the_same_clay(tmp_path: Path) ->
     one, other = law.at_points(depth, initial), known.at_points(depth, initial)
     history, again = one.start(), other.start()
     for seed in range(3):
-        found, wanted = one.update(3.0 * strains(40, seed), history), other.update(3.0 * strains(40, seed), again)
-        for values, expected in zip(found, wanted, strict=True):
+        update, wanted = one.update(3.0 * strains(40, seed), history), other.update(3.0 * strains(40, seed), again)
+        for values, expected in zip(update, wanted, strict=True):
             assert np.array_equal(values, expected)
-        history, again = found.history, wanted.history
+        history, again = update.history, wanted.history
     np.testing.assert_allclose(one.bulk, other.bulk, rtol=1e-12)
     np.testing.assert_allclose(one.shear, other.shear, rtol=1e-12)
     assert law.surface_modulus(0.3) == pytest.approx(known.surface_modulus(0.3), rel=1e-12)
@@ -250,10 +250,10 @@ def test_two_ranks_find_on_it_what_one_finds_on_the_program_s_own_clay(tmp_path:
     scene = clay_scene(tmp_path)
     given = {key: value for key, value in scene["soil"]["law"].items() if key != "from"}
     program_s = scene | {"soil": scene["soil"] | {"law": given | {"kind": "von-mises"}}}
-    wanted, found = (ran(each, tmp_path / f"on{n}", n).dataset for n, each in ((1, program_s), (2, scene)))
+    wanted, computed = (ran(each, tmp_path / f"on{n}", n).dataset for n, each in ((1, program_s), (2, scene)))
     for name in COMPARED:
         largest = float(np.abs(wanted[name]).max())
-        np.testing.assert_allclose(found[name], wanted[name], rtol=1e-6, atol=1e-6 * largest)
+        np.testing.assert_allclose(computed[name], wanted[name], rtol=1e-6, atol=1e-6 * largest)
 
 
 WRONG: dict[str, tuple[str, str, str, tuple[str, ...]]] = {
@@ -302,13 +302,13 @@ PARAMETERS: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("name", WRONG)
 def test_what_a_law_does_wrong_is_told_in_one_line(own: Write, name: str) -> None:
-    text, right, wrong, told = WRONG[name]
+    text, right, wrong, words = WRONG[name]
     assert right in text
     law = own(text.replace(right, wrong, 1), **PARAMETERS[text])
     depth, initial = points()
-    with pytest.raises(SceneError, match=telling("soil.law", "own.py:Own", *told)) as found:
+    with pytest.raises(SceneError, match=telling("soil.law", "own.py:Own", *words)) as error:
         law.at_points(depth, initial)
-    assert "\n" not in str(found.value)
+    assert "\n" not in str(error.value)
 
 
 def test_a_wrong_tangent_is_told_with_depth_and_strain_increment(own: Write) -> None:
@@ -327,10 +327,10 @@ def scene_text(folder: Path, law: Mapping) -> str:
 
 
 def refused(folder: Path, law: Mapping) -> str:
-    with pytest.raises(SceneError) as found:
+    with pytest.raises(SceneError) as error:
         checked(parse(scene_text(folder, law), "scene.yaml"), folder)
-    assert "\n" not in str(found.value)
-    return str(found.value)
+    assert "\n" not in str(error.value)
+    return str(error.value)
 
 
 def test_a_scene_names_file_class_and_parameters_or_is_refused(tmp_path: Path) -> None:
@@ -388,8 +388,8 @@ def test_a_failure_on_the_way_is_told_once_and_answers_nothing(own: Write, capsy
     formula = law.at_points(depth, initial)
     capsys.readouterr()
     for _ in range(2):
-        found = formula.update(np.full((4, 6), 0.05), formula.start())
-        assert all(np.isnan(values).all() for values in found[:3])
+        update = formula.update(np.full((4, 6), 0.05), formula.start())
+        assert all(np.isnan(values).all() for values in update[:3])
     line_with(capsys.readouterr().err, "soil.law", "own.py:Own", "own.py:19:", "ArithmeticError", "too far")
 
 
@@ -403,6 +403,6 @@ def test_forecasts_and_contact_take_the_stress_at_a_depth(own: Write, tmp_path: 
     assert soil is not None
     law = soil.top_law
     assert law.surface_modulus(0.3) == pytest.approx(100.0 * 0.15 * 5.0e3 * (1.0 + 1.2) / 3.0, rel=1e-9)
-    found = predicted_settlement(built(scene).riser)
-    assert found is not None
-    assert 0.0 < found.by_weight < 1.0
+    settled = predicted_settlement(built(scene).riser)
+    assert settled is not None
+    assert 0.0 < settled.by_weight < 1.0

@@ -38,8 +38,8 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def kernels_in(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As far as the compliance is concerned."""
-    seen = SimpleNamespace(FOLDER=folder, NAME=compiled.NAME, tell=compiled.tell)
-    monkeypatch.setattr(kept_compliance, "compiled", seen)
+    environment = SimpleNamespace(FOLDER=folder, NAME=compiled.NAME, tell=compiled.tell)
+    monkeypatch.setattr(kept_compliance, "compiled", environment)
 
 
 @pytest.fixture
@@ -67,17 +67,17 @@ def compliance(mapping: Mapping | None = None) -> Compliance:
     return condensed.top.compliance
 
 
-def nodes_of(found: Compliance, *groups: int) -> IntArray:
+def nodes_of(kept: Compliance, *groups: int) -> IntArray:
     """One node of each of some groups, the last one first."""
-    return np.array([np.flatnonzero(found._group == group)[3] for group in reversed(groups)])
+    return np.array([np.flatnonzero(kept._group == group)[3] for group in reversed(groups)])
 
 
-def answers(found: Compliance, *groups: int) -> tuple[Array, Array]:
+def answers(kept: Compliance, *groups: int) -> tuple[Array, Array]:
     """Columns of a node of each of some groups, and the whole soil's displacement by forces on them."""
-    nodes = nodes_of(found, *groups)
-    forces = np.zeros((len(found.top) // 3, 3))
+    nodes = nodes_of(kept, *groups)
+    forces = np.zeros((len(kept.top) // 3, 3))
     forces[nodes] = np.random.default_rng(1).normal(size=(len(nodes), 3))
-    return found.columns(nodes), found.displacement(forces.ravel())
+    return kept.columns(nodes), kept.displacement(forces.ravel())
 
 
 def assert_same(got: tuple[Array, Array], wanted: tuple[Array, Array]) -> None:
@@ -211,9 +211,9 @@ def test_a_run_goes_on_where_nothing_can_be_kept(
     folder.parent.mkdir()
     folder.write_text("in the way")
     assert_same(answers(compliance(), 0, 2), anew)
-    (reported,) = capfd.readouterr().err.splitlines()
-    line_with([reported], "soil's compliance", "not kept")
-    assert str(folder) in reported
+    (line,) = capfd.readouterr().err.splitlines()
+    line_with([line], "soil's compliance", "not kept")
+    assert str(folder) in line
 
 
 def test_a_disk_that_is_nearly_full_is_left_alone(
@@ -231,11 +231,11 @@ def test_memory_has_no_more_than_some_columns(
     """Those that are not there any more are solved for again, with the same factors and bits."""
     monkeypatch.setattr(kept_compliance, "LEFT", 1 << 60)
     monkeypatch.setattr("riser_soil.soil.compliance.HELD", 1)
-    found = compliance()
+    kept = compliance()
     for _ in range(2):
-        assert_same(answers(found, 0, 2), anew)
-        assert len(found._groups) == 1
-    assert factorised == [found]
+        assert_same(answers(kept, 0, 2), anew)
+        assert len(kept._groups) == 1
+    assert factorised == [kept]
 
 
 def test_the_soils_not_used_for_longest_make_workspace(
@@ -265,9 +265,9 @@ def test_nothing_is_kept_or_read_where_it_is_switched_off(
     answers(compliance(), 0)
     kept = sorted(folder.rglob("*"))
     monkeypatch.setenv(SWITCH, "off")
-    found = compliance()
-    assert not found.kept
-    answers(found, 0, 2)
+    of_program = compliance()
+    assert not of_program.kept
+    answers(of_program, 0, 2)
     assert len(factorised) == 2
     assert sorted(folder.rglob("*")) == kept
 
@@ -295,7 +295,7 @@ def laid() -> tuple[Array, Array]:
 
 
 def test_check_tells_what_is_at_hand(folder: Path) -> None:
-    reported = "soil: what earlier runs have found of its compliance is at hand"
-    assert reported not in describe(scene_from_mapping(scene()))
+    line = "soil: what earlier runs have found of its compliance is at hand"
+    assert line not in describe(scene_from_mapping(scene()))
     answers(compliance(), 0)
-    assert reported in describe(scene_from_mapping(scene()))
+    assert line in describe(scene_from_mapping(scene()))

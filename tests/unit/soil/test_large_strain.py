@@ -109,8 +109,8 @@ def test_pressure_is_that_of_the_volume_that_there_is(kind: str) -> None:
         move(soil, first * np.array([plan / height, 1.0, height]))
     now = point_volumes(soil.grid.family, soil.points, soil.grid.nodes.cells)
     np.testing.assert_allclose(now.sum(axis=1) / volume.sum(axis=1), 1.0 - 1e-3, rtol=1e-12)
-    found = -stress(soil)[:, :3].mean(axis=1)
-    np.testing.assert_allclose(found, -soil.law.bulk * np.log(1.0 - 1e-3), rtol=5e-3)
+    pressure = -stress(soil)[:, :3].mean(axis=1)
+    np.testing.assert_allclose(pressure, -soil.law.bulk * np.log(1.0 - 1e-3), rtol=5e-3)
 
 
 def nodal_forces(soil: Soil, u: Array) -> Array:
@@ -129,12 +129,12 @@ def test_forces_are_those_on_the_geometry_of_the_state_that_it_is_placed_at(kind
     u, placed = at @ H.T, (at - first).ravel()
     there = nodal_forces(soil, u)
     soil.place(State(1.0, placed, placed, placed))
-    found = nodal_forces(soil, u)
+    forces = nodal_forces(soil, u)
     strain = 0.5 * (H + H.T)
     stress = 2.0 * soil.law.shear[0] * strain
     stress += (soil.law.bulk[0] - 2.0 / 3.0 * soil.law.shear[0]) * np.trace(strain) * np.eye(3)
     volume = float(point_volumes(soil.grid.family, at, soil.grid.nodes.cells).sum())
-    np.testing.assert_allclose(found.T @ at, stress * volume, rtol=1e-9)
+    np.testing.assert_allclose(forces.T @ at, stress * volume, rtol=1e-9)
     soil.place(State.at_rest(1.0, u.size))
     np.testing.assert_allclose(nodal_forces(soil, u), there, rtol=1e-9, atol=1e-9 * np.abs(there).max())
 
@@ -251,12 +251,12 @@ def test_cells_beside_new_ones_stay_as_they_are() -> None:
     made, order = x[:, 0] < 1.0 - 1e-9, np.argsort(soil.grid.nodes.number)
     there = np.where(made[:, None], waved(soil, 0.02), soil.points)
     beside = ~made[soil.cells.nodes].any(axis=1)
-    held = stress(soil).reshape(*soil.cells.shape, 6), soil.worn, soil.cells.made_at.copy()
+    kept = stress(soil).reshape(*soil.cells.shape, 6), soil.worn, soil.cells.made_at.copy()
     assert np.allclose(soil.gathered_wear(soil.worn)[order].max(), soil.worn.max())
     soil.take_mesh(there[order], made[order])
     now = stress(soil).reshape(*soil.cells.shape, 6), soil.worn, soil.cells.made_at
     assert 0 < beside.sum() < beside.size
-    for before, after in zip(held, now, strict=True):
+    for before, after in zip(kept, now, strict=True):
         assert np.array_equal(before[beside], after[beside])
         assert not np.array_equal(before[~beside], after[~beside])
     assert soil.worn[made[soil.cells.nodes].all(axis=1)].max() == 0.0

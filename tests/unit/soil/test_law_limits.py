@@ -56,9 +56,9 @@ def test_clay_without_strength_at_the_seabed_has_that_of_its_depth(kind: str) ->
     strain[:, 4] = 0.1
     history = formula.start()
     for _ in range(200):
-        found = formula.update(strain, history)
-        history = found.history
-    np.testing.assert_allclose(mandel.von_mises(found.stress), np.sqrt(3.0) * 1.0e3 * depth, rtol=1e-6)
+        update = formula.update(strain, history)
+        history = update.history
+    np.testing.assert_allclose(mandel.von_mises(update.stress), np.sqrt(3.0) * 1.0e3 * depth, rtol=1e-6)
 
 
 @pytest.mark.parametrize("kind", CLAYS)

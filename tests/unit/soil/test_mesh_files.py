@@ -38,8 +38,8 @@ ACCEPTED = {
 def test_two_boxes_however_they_are_numbered(name: str, tmp_path: Path) -> None:
     grid = read(tmp_path, ACCEPTED[name])
     assert len(grid.nodes.cells) == 2
-    found = np.round(grid.nodes.points, 12) + 0.0
-    assert sorted((x, y, z) for x, y, z in found) == sorted(Drawing(LEFT, RIGHT).points)
+    points = np.round(grid.nodes.points, 12) + 0.0
+    assert sorted((x, y, z) for x, y, z in points) == sorted(Drawing(LEFT, RIGHT).points)
     volumes = np.ptp(grid.nodes.points[grid.nodes.cells], axis=1).prod(axis=1)
     np.testing.assert_allclose(volumes, 1.0, rtol=1e-14)
 

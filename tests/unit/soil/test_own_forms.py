@@ -53,9 +53,9 @@ def test_a_body_force_weighs_what_it_says(kind: str, tmp_path: Path) -> None:
     grid = slice_grid(MPI.COMM_SELF, slices_spec(0)) if sections else distorted(small_block(kind))
     soil = soil_on(grid)
     part = forms(soil, BODY.format(up=1 if sections else 2), tmp_path)
-    found = force(part, State.at_rest(1.0, soil.field.size)).reshape(-1, 3)
-    np.testing.assert_allclose(found.sum(axis=0), [0.0, 0.0, 700.0 * soil.cells.volumes.sum()], atol=1e-8)
-    assert np.abs(found[:, :2]).max() < 1e-12
+    forces = force(part, State.at_rest(1.0, soil.field.size)).reshape(-1, 3)
+    np.testing.assert_allclose(forces.sum(axis=0), [0.0, 0.0, 700.0 * soil.cells.volumes.sum()], atol=1e-8)
+    assert np.abs(forces[:, :2]).max() < 1e-12
 
 
 @pytest.mark.parametrize("inertia", [False, True])
@@ -71,10 +71,10 @@ def test_the_tangent_is_the_slope_of_the_residual(kind: str, inertia: bool, tmp_
     state, h = State(2.0, u, v, v, dt=dt), 1e-5
     ahead, behind = (replace(state, u=u + s * h * along, v=v + s * h * 7.0 * along) for s in (1.0, -1.0))
     numeric = weights.force * (force(part, ahead) - force(part, behind)) / (2.0 * h)
-    found = tangent_times(part, state, weights, along)
-    np.testing.assert_allclose(found, numeric, atol=1e-7 * np.abs(numeric).max())
+    forces = tangent_times(part, state, weights, along)
+    np.testing.assert_allclose(forces, numeric, atol=1e-7 * np.abs(numeric).max())
     stiff = tangent_times(part, replace(state, u=u + 0.5), weights, along)
-    assert np.abs(stiff - found).max() > 1e-2 * np.abs(found).max()
+    assert np.abs(stiff - forces).max() > 1e-2 * np.abs(forces).max()
 
 
 def tangent_times(part: SoilForms, state: State, weights: Weights, along: Array) -> Array:
@@ -92,9 +92,9 @@ def test_springs_on_the_bottom_hold_it_as_a_whole(tmp_path: Path) -> None:
     part = forms(soil, text, tmp_path)
     moved = State.at_rest(1.0, soil.field.size)
     moved.u[1::3] = 2e-3
-    found = force(part, moved).reshape(-1, 3)
-    np.testing.assert_allclose(found.sum(axis=0), [0.0, 5.0e3 * 2e-3 * 3.0, 0.0], atol=1e-12)
-    assert not found[soil.grid.nodes.points[:, 2] > -0.999].any()
+    forces = force(part, moved).reshape(-1, 3)
+    np.testing.assert_allclose(forces.sum(axis=0), [0.0, 5.0e3 * 2e-3 * 3.0, 0.0], atol=1e-12)
+    assert not forces[soil.grid.nodes.points[:, 2] > -0.999].any()
     work = part.work(State.at_rest(1.0, soil.field.size), moved)
     assert work.external == pytest.approx(-5.0e3 * 2e-3 * 3.0 * 2e-3)
 
@@ -112,7 +112,7 @@ def test_velocity_of_quasi_static_soil_is_the_mean_of_the_step(tmp_path: Path) -
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "words"),
     [
         ("def residual(soil):\n    return 3.0\n", "must return a form, not float"),
         ("def residual(soil):\n    return soil.v[2] * soil.ds('top')\n", "ds has bottom and sides"),
@@ -125,10 +125,10 @@ def test_velocity_of_quasi_static_soil_is_the_mean_of_the_step(tmp_path: Path) -
         ("def residual(soil)\n", "my_terms.py:1: SyntaxError"),
     ],
 )
-def test_wrong_terms_are_told_in_one_line(text: str, told: str, tmp_path: Path) -> None:
-    with pytest.raises(SceneError) as found:
+def test_wrong_terms_are_told_in_one_line(text: str, words: str, tmp_path: Path) -> None:
+    with pytest.raises(SceneError) as error:
         forms(soil_on(small_block("hex", size=1.0)), text, tmp_path)
-    message = str(found.value)
-    assert told in message
+    message = str(error.value)
+    assert words in message
     assert message.startswith("soil.forms: my_terms.py: ")
     assert "\n" not in message

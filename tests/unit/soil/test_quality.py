@@ -38,9 +38,9 @@ def with_cell(grid: DistributedMesh, corners: Any) -> DistributedMesh:
 
 def test_best_cells_have_ones() -> None:
     for corners in (CUBE, REGULAR, CUBE[::-1], REGULAR[::-1]):
-        found = of_one(corners)
-        assert [found.aspect, found.jacobian] == pytest.approx([1.0, 1.0])
-        assert found.poor == 0
+        quality = of_one(corners)
+        assert [quality.aspect, quality.jacobian] == pytest.approx([1.0, 1.0])
+        assert quality.poor == 0
     assert of_one(3.0 * CUBE).smallest == of_one(3.0 * CUBE).largest == pytest.approx(3.0)
 
 
@@ -60,9 +60,9 @@ def test_flat_tetrahedra() -> None:
     h = 0.01
     corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, h]]
     area = 0.5 + h + np.sqrt(0.25 + 0.5 * h * h)
-    found = of_one(corners)
-    assert found.aspect == pytest.approx(np.sqrt(2.0) / (2.0 * np.sqrt(6.0) * 0.5 * h / area), rel=1e-12)
-    assert found.jacobian == pytest.approx(np.sqrt(2.0) * h / np.sqrt(2.0) / np.sqrt(1.0 + h * h), rel=1e-12)
+    quality = of_one(corners)
+    assert quality.aspect == pytest.approx(np.sqrt(2.0) / (2.0 * np.sqrt(6.0) * 0.5 * h / area), rel=1e-12)
+    assert quality.jacobian == pytest.approx(np.sqrt(2.0) * h / np.sqrt(2.0) / np.sqrt(1.0 + h * h), rel=1e-12)
 
 
 def report(scene: dict[str, Any], folder: Path = Path()) -> str:
@@ -73,8 +73,8 @@ def test_check_tells_the_quality() -> None:
     scene = touchdown()
     scene["soil"]["block"]["y"] = [-1.25, 1.25]
     scene["soil"]["mesh"] = {"kind": "hex", "size_at_riser": 0.5, "size_far": 0.5}
-    reported = "soil mesh: edges of 0.5 to 0.5 m, aspect ratios up to 1, scaled Jacobians from 1 (1 is best)"
-    assert reported in report(scene)
+    line = "soil mesh: edges of 0.5 to 0.5 m, aspect ratios up to 1, scaled Jacobians from 1 (1 is best)"
+    assert line in report(scene)
 
 
 def drawn(folder: Path, *boxes: Any, **soil: Any) -> dict[str, Any]:

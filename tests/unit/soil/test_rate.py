@@ -50,15 +50,15 @@ def at(clay: UndrainedClay, n: int = 1, K0: float = 1.0) -> Formula:
 
 def shear(law: Formula, strains: Array, seconds: Array) -> tuple[Array, Array]:
     """Shear stress [Pa] and plastic shear strain gone through after each of a row of shear strains, at these times."""
-    history, found = law.start(), list[tuple[float, float]]()
+    history, curve = law.start(), list[tuple[float, float]]()
     for strain, dt in zip(np.diff(strains, prepend=0.0), np.diff(seconds, prepend=0.0), strict=True):
         increment = np.zeros((1, 6))
         increment[0, 4] = strain / np.sqrt(2.0)
         answer = law.update(increment, history, dt)
         history = answer.history
         slip = float(history[0, law.columns.index(PLASTIC_STRAIN)])
-        found.append((float(answer.stress[0, 4]) / np.sqrt(2.0), np.sqrt(3.0) * slip))
-    stress, slips = np.array(found).T
+        curve.append((float(answer.stress[0, 4]) / np.sqrt(2.0), np.sqrt(3.0) * slip))
+    stress, slips = np.array(curve).T
     return stress, slips
 
 
@@ -87,10 +87,10 @@ def test_slow_is_as_without_rate_and_at_once_is_elastic(clay: UndrainedClay) -> 
     increment = 0.01 * rng.standard_normal((40, 6))
     for slow, plain in zip(law.update(increment, history), intact.update(increment, history), strict=True):
         np.testing.assert_array_equal(slow, plain)
-    found = law.update(increment, history, dt=0.0)
+    update = law.update(increment, history, dt=0.0)
     elastic = mandel.elastic_stress(law.bulk, law.shear, increment)
-    np.testing.assert_allclose(found.stress, history[:, :6] + elastic, rtol=1e-9, atol=1e-6 * SU)
-    np.testing.assert_allclose(found.tangent, mandel.stiffness(law.bulk, law.shear), rtol=1e-12, atol=1e-9 * G)
+    np.testing.assert_allclose(update.stress, history[:, :6] + elastic, rtol=1e-9, atol=1e-6 * SU)
+    np.testing.assert_allclose(update.tangent, mandel.stiffness(law.bulk, law.shear), rtol=1e-12, atol=1e-9 * G)
 
 
 def clays_at(clay: UndrainedClay) -> int:
@@ -102,8 +102,8 @@ def test_no_gain_is_the_law_without_rate(clay: UndrainedClay) -> None:
     none = clay.model_copy(update={"rate": Rate(mu=0.0, reference=SLOW)})
     increment = 0.01 * np.random.default_rng(4).standard_normal((9, 6))
     law, plain = at(none, 9, 0.9), at(clays()[clays_at(clay)], 9, 0.9)
-    found, wanted = law.update(increment, law.start(), 1e-3), plain.update(increment, plain.start())
-    for values, expected in zip(found, wanted, strict=True):
+    update, wanted = law.update(increment, law.start(), 1e-3), plain.update(increment, plain.start())
+    for values, expected in zip(update, wanted, strict=True):
         np.testing.assert_array_equal(values, expected)
 
 
@@ -117,8 +117,8 @@ def test_held_clay_relaxes_by_the_logarithm_of_time() -> None:
     errors = []
     for n in (40, 80, 160):
         times = np.linspace(0.0, gone, n + 1)[1:]
-        held = np.concatenate([strains, np.full(n, strains[-1])])
-        stress, _ = shear(law, held, np.concatenate([strains / fast, strains[-1] / fast + times]))
+        path = np.concatenate([strains, np.full(n, strains[-1])])
+        stress, _ = shear(law, path, np.concatenate([strains / fast, strains[-1] / fast + times]))
         errors.append(stress[-1] - exact)
     assert SU < exact < 0.98 * first[-1]
     assert 0.0 < errors[-1] < 2e-3 * SU
@@ -145,17 +145,17 @@ def test_the_tangent_is_that_of_the_stress(clay: UndrainedClay, remoulding: Remo
         history = law.update(0.05 * rng.standard_normal((40, 6)), history, 10.0).history
     for size, dt in ((1e-3, 1.0), (5e-3, 30.0), (5e-3, 1e-3)):
         increment, h = size * rng.standard_normal((40, 6)), 1e-8
-        found = law.update(increment, history, dt)
+        update = law.update(increment, history, dt)
         slow = law.update(increment, history).tangent
         off, without = np.empty((2, 40, 6, 6))
         for j, step in enumerate(h * np.eye(6)):
             ahead, behind = (law.update(increment + sign * step, history, dt).stress for sign in (1.0, -1.0))
-            off[:, :, j] = found.tangent[:, :, j] - (ahead - behind) / (2.0 * h)
+            off[:, :, j] = update.tangent[:, :, j] - (ahead - behind) / (2.0 * h)
             without[:, :, j] = slow[:, :, j] - (ahead - behind) / (2.0 * h)
         assert np.quantile(np.abs(off), 0.9) < 1e-6 * G
         assert np.abs(off).max(axis=(1, 2)).mean() < 1e-5 * G
         assert np.quantile(np.abs(without).max(axis=(1, 2)), 0.5) > 1e-2 * G
-        skew = np.abs(found.tangent - np.swapaxes(found.tangent, 1, 2)).max()
+        skew = np.abs(update.tangent - np.swapaxes(update.tangent, 1, 2)).max()
         assert skew < 1e-10 * G or not law.symmetric
 
 
@@ -180,20 +180,20 @@ def cycles(law: Formula, rate: float, amplitude: float, n: int, turns: int = 9) 
 @each(rate=RATE, remoulding=REMOULDING)
 def test_cycles_weaken_by_what_they_have_remoulded_and_strengthen_by_their_rate(clay: UndrainedClay) -> None:
     """Turn by turn su δ(ξ) (1 + µ lg rate), later cycles below earlier ones; the fast ones flow a little less."""
-    found = [cycles(at(clay), times * SLOW, 1.5, 400) for times in (1.0, 100.0)]
-    for (stress, xi), gain in zip(found, (0.0, 2.0 * MU), strict=True):
-        left = 0.25 + 0.75 * np.exp(-1.5 * xi)
+    strengths = [cycles(at(clay), times * SLOW, 1.5, 400) for times in (1.0, 100.0)]
+    for (stress, xi), gain in zip(strengths, (0.0, 2.0 * MU), strict=True):
+        remaining = 0.25 + 0.75 * np.exp(-1.5 * xi)
         near = 0.03 if clay.kind == "iwan" else 0.01  # whose strongest element yields last
-        np.testing.assert_allclose(stress, SU * left * (1.0 + gain), rtol=near)
+        np.testing.assert_allclose(stress, SU * remaining * (1.0 + gain), rtol=near)
         assert (np.diff(stress) < 0.0).all()
         assert stress[-1] < 0.3 * (1.0 + gain) * SU
-    assert (found[1][1] < found[0][1]).all()
+    assert (strengths[1][1] < strengths[0][1]).all()
 
 
 def test_smaller_steps_of_a_cycle_converge_at_order_one() -> None:
     law = at(clays(rate=RATE, remoulding=REMOULDING)[1])
-    found = [cycles(law, 100.0 * SLOW, 0.05, n, turns=5)[0] for n in (50, 100, 200, 400)]
-    changes = np.array([np.abs(fine - coarse).max() / SU for coarse, fine in pairwise(found)])
+    results = [cycles(law, 100.0 * SLOW, 0.05, n, turns=5)[0] for n in (50, 100, 200, 400)]
+    changes = np.array([np.abs(fine - coarse).max() / SU for coarse, fine in pairwise(results)])
     assert changes[-1] < 2e-3
     np.testing.assert_allclose(np.log2(changes[:-1] / changes[1:]), 1.0, atol=0.2)
 
@@ -205,18 +205,18 @@ def test_layers_with_and_without_rate_lie_side_by_side() -> None:
     assert law.by_rate
     assert not of_layers(laws[1:], np.zeros(6, dtype=int), np.zeros(6), initial).by_rate
     increment = 0.05 * np.random.default_rng(1).standard_normal((6, 6))
-    found = law.update(increment, law.start(), 1.0)
+    update = law.update(increment, law.start(), 1.0)
     for places, own in (([0, 2, 5], laws[0]), ([1, 3, 4], laws[1])):
         alone = own.at_points(np.zeros(3), initial[places])
         wanted = alone.update(increment[places], alone.start(), 1.0)
-        np.testing.assert_array_equal(found.stress[places], wanted.stress)
-        np.testing.assert_array_equal(found.tangent[places], wanted.tangent)
-    over = law.overstress(found.stress)
+        np.testing.assert_array_equal(update.stress[places], wanted.stress)
+        np.testing.assert_array_equal(update.tangent[places], wanted.tangent)
+    over = law.overstress(update.stress)
     assert over[[0, 2, 5]].min() > 1.3 > 1.0 + 1e-9 > over[[1, 3, 4]].max()
 
 
 @pytest.mark.parametrize(
-    ("given", "reported"),
+    ("given", "message"),
     [
         ({"mu": -0.1, "reference": 1e-5}, "must be at least 0"),
         ({"mu": 1.5, "reference": 1e-5}, "must be at most 1"),
@@ -225,8 +225,8 @@ def test_layers_with_and_without_rate_lie_side_by_side() -> None:
         ({"mu": 0.1, "reference": 1e-5, "gain": 1.0}, "no such key"),
     ],
 )
-def test_wrong_constants_are_reported(given: dict[str, float], reported: str) -> None:
+def test_wrong_constants_are_reported(given: dict[str, float], message: str) -> None:
     scene = touchdown()
     scene["soil"]["law"]["rate"] = given
-    with pytest.raises(SceneError, match=reported):
+    with pytest.raises(SceneError, match=message):
         scene_from_mapping(scene)

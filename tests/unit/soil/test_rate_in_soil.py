@@ -136,19 +136,19 @@ def test_a_new_mesh_takes_over_what_fast_shear_has_left() -> None:
 
 
 @pytest.mark.parametrize(
-    ("stages", "reference", "reported"),
+    ("stages", "reference", "message"),
     [
         ([LAY], 1e-5, "has no other"),
         ([LAY, heave(3.0)], 10.0, "10 1/s, is more than the fastest end makes over a diameter, 2.09 1/s"),
         ([LAY, heave(3.0)], 2.0, ""),
     ],
 )
-def test_a_rate_that_changes_nothing_is_reported(stages: list[Mapping], reference: float, reported: str) -> None:
+def test_a_rate_that_changes_nothing_is_reported(stages: list[Mapping], reference: float, message: str) -> None:
     """The end heaves by up to 0.3 m * 2 pi / 3 s = 0.628 m/s, over a diameter of 0.3 m."""
     scene = touchdown(*stages)
     scene["soil"]["law"]["rate"] = {"mu": 0.1, "reference": reference}
-    found = [text for text in ground_warnings(built(scene).riser) if "soil.law.rate" in text]
-    assert (reported in found[0]) if reported else not found
+    texts = [text for text in ground_warnings(built(scene).riser) if "soil.law.rate" in text]
+    assert (message in texts[0]) if message else not texts
 
 
 def test_steps_tell_their_time_and_held_lines_leave_the_soil_none() -> None:
@@ -162,11 +162,11 @@ def test_steps_tell_their_time_and_held_lines_leave_the_soil_none() -> None:
     def watch(system: System, step: AcceptedStep) -> None:
         times.append(step.solution.state.dt)
 
-    left = take(assembly, lay, None, watch)
+    state = take(assembly, lay, None, watch)
     assert {*times} == {math.inf}
-    assert left.dt == 0.0
+    assert state.dt == 0.0
     times.clear()
-    take(assembly, last, left, watch)
+    take(assembly, last, state, watch)
     assert times == pytest.approx([0.15] * 10)
     used = strength_used(soil)
     settings = NewtonSettings(assembly.scene.solver.tolerance, 20, assembly.scales.force_floor)

@@ -37,21 +37,21 @@ def at(clay: UndrainedClay, n: int, K0: float = 1.0) -> RemouldedClay:
     return formula
 
 
-def left(xi: Array | float) -> Any:
+def remaining(xi: Array | float) -> Any:
     return REST + (1.0 - REST) * np.exp(-3.0 * np.asarray(xi) / XI)
 
 
 def shear(law: RemouldedClay, strains: Array) -> tuple[Array, Array]:
     """Shear stress [Pa] and plastic shear strain gone through after each of a row of shear strains."""
-    history, before, found = law.start(), 0.0, list[tuple[float, float]]()
+    history, before, curve = law.start(), 0.0, list[tuple[float, float]]()
     for strain in strains:
         increment = np.zeros((1, 6))
         increment[0, 4] = (strain - before) / np.sqrt(2.0)
         answer = law.update(increment, history)
         slip = float(answer.history[0, law.columns.index(PLASTIC_STRAIN)])
-        found.append((float(answer.stress[0, 4]) / np.sqrt(2.0), np.sqrt(3.0) * slip))
+        curve.append((float(answer.stress[0, 4]) / np.sqrt(2.0), np.sqrt(3.0) * slip))
         history, before = answer.history, float(strain)
-    stress, slips = np.array(found).T
+    stress, slips = np.array(curve).T
     return stress, slips
 
 
@@ -68,8 +68,8 @@ def test_steady_shear_follows_the_strength_of_its_strain() -> None:
         stress, slips = shear(at(CLAYS[0], 1), strains)
         yields = slips > 0.0
         before = np.append(0.0, slips[:-1])
-        np.testing.assert_allclose(stress[yields], (SU * left(before))[yields], rtol=1e-12)
-        errors.append(np.abs(stress / (SU * left(strains - stress / G)) - 1.0)[yields].max())
+        np.testing.assert_allclose(stress[yields], (SU * remaining(before))[yields], rtol=1e-12)
+        errors.append(np.abs(stress / (SU * remaining(strains - stress / G)) - 1.0)[yields].max())
     assert errors[-1] < 0.006
     np.testing.assert_allclose(np.log2(np.array(errors[:-1]) / errors[1:]), 1.0, atol=0.1)
 
@@ -83,12 +83,12 @@ def test_cycles_of_shear_follow_their_closed_form() -> None:
     xi = [amplitude - SU / G]
     for way in (amplitude, *[2.0 * amplitude] * 11):
         before = xi[-1] if way > amplitude else 0.0
-        elastic, after = SU * left(before) / G if way > amplitude else 0.0, before
+        elastic, after = SU * remaining(before) / G if way > amplitude else 0.0, before
         for _ in range(60):
-            after = before + way - elastic - SU * left(after) / G
+            after = before + way - elastic - SU * remaining(after) / G
         xi.append(after)
     np.testing.assert_allclose(slips[n - 1 :: n], xi[1:], rtol=1e-3)
-    np.testing.assert_allclose(np.abs(stress[n - 1 :: n]), SU * left(np.array(xi[1:])), rtol=1e-3)
+    np.testing.assert_allclose(np.abs(stress[n - 1 :: n]), SU * remaining(np.array(xi[1:])), rtol=1e-3)
     assert xi[-1] > 0.5 * XI
 
 
@@ -106,10 +106,10 @@ def test_the_tangent_is_that_of_the_stress(clay: UndrainedClay) -> None:
         history = law.update(0.05 * rng.standard_normal((30, 6)), history).history
     assert 0.3 < law.strength(history).mean() < 0.6
     increment, h = 3e-3 * rng.standard_normal((30, 6)), 1e-8
-    found = law.update(increment, history)
+    update = law.update(increment, history)
     for j, step in enumerate(h * np.eye(6)):
         ahead, behind = (law.update(increment + sign * step, history).stress for sign in (1.0, -1.0))
-        off = np.abs(found.tangent[:, :, j] - (ahead - behind) / (2.0 * h)) / G
+        off = np.abs(update.tangent[:, :, j] - (ahead - behind) / (2.0 * h)) / G
         assert np.quantile(off, 0.8) < 1e-6
 
 
@@ -119,9 +119,9 @@ def test_stress_stays_within_the_strength_that_is_left(clay: UndrainedClay) -> N
     history = law.start()
     for _ in range(40):
         limit = np.sqrt(3.0) * SU * law.strength(history)
-        found = law.update(10.0 ** rng.uniform(-5.0, -0.7, (300, 1)) * rng.standard_normal((300, 6)), history)
-        assert (mandel.von_mises(found.stress) / limit).max() < 1.0 + 1e-10
-        history = found.history
+        update = law.update(10.0 ** rng.uniform(-5.0, -0.7, (300, 1)) * rng.standard_normal((300, 6)), history)
+        assert (mandel.von_mises(update.stress) / limit).max() < 1.0 + 1e-10
+        history = update.history
     assert np.median(limit) < 0.35 * np.sqrt(3.0) * SU
 
 
@@ -148,15 +148,15 @@ def test_clay_without_remoulding_is_the_intact_one() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "reported"),
+    ("given", "message"),
     [
         ({"sensitivity": 0.5, "xi_95": 10.0}, "must be at least 1"),
         ({"sensitivity": 3.0, "xi_95": 0.0}, "must be greater than 0"),
         ({"sensitivity": 3.0}, "missing"),
     ],
 )
-def test_wrong_constants_are_reported(given: dict[str, float], reported: str) -> None:
+def test_wrong_constants_are_reported(given: dict[str, float], message: str) -> None:
     scene = touchdown()
     scene["soil"]["law"]["remoulding"] = given
-    with pytest.raises(SceneError, match=reported):
+    with pytest.raises(SceneError, match=message):
         scene_from_mapping(scene)

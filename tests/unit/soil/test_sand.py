@@ -40,8 +40,8 @@ def sheared(law: FrictionalSoil, direction: Array, steps: int = 400) -> tuple[Ar
     """Stress and the last change of it (n, 6) after so many equal increments."""
     history, stress, change = law.start(), law.initial, np.zeros_like(law.initial)
     for _ in range(steps):
-        found = law.update(direction, history)
-        change, stress, history = found.stress - stress, found.stress, found.history
+        update = law.update(direction, history)
+        change, stress, history = update.stress - stress, update.stress, update.history
     return stress, change
 
 
@@ -76,8 +76,8 @@ def test_the_flow_dilates_by_its_angle(phi: float, psi: float) -> None:
     direction = 6e-5 * np.array([[1.0 + dilates, 0.0, dilates - 1.0, 0.0, 0.0, 0.0]])
     stress, _ = sheared(law, direction, 1000)
     history = np.column_stack((stress, np.zeros(1)))
-    found = law.update(direction, history)
-    plastic = direction - mandel.elastic_strain(law.bulk, law.shear, found.stress - stress)
+    update = law.update(direction, history)
+    plastic = direction - mandel.elastic_strain(law.bulk, law.shear, update.stress - stress)
     volume, shear = plastic[0, 0] + plastic[0, 2], plastic[0, 0] - plastic[0, 2]
     assert abs(plastic[0, 1]) < 1e-6 * shear
     assert volume / shear == pytest.approx(dilates, abs=1e-6)
@@ -96,12 +96,12 @@ def test_the_associated_cone_is_drucker_and_pragers() -> None:
 
 def off(law: FrictionalSoil, increment: Array, history: Array) -> Array:
     """Largest difference of the tangent from that by differences, at each point, over 2G."""
-    found, h = law.update(increment, history), 1e-8
+    update, h = law.update(increment, history), 1e-8
     columns = [
         (law.update(increment + step, history).stress - law.update(increment - step, history).stress) / (2.0 * h)
         for step in h * np.eye(6)
     ]
-    return np.abs(found.tangent - np.stack(columns, axis=2)).max(axis=(1, 2)) / (2.0 * law.shear)
+    return np.abs(update.tangent - np.stack(columns, axis=2)).max(axis=(1, 2)) / (2.0 * law.shear)
 
 
 @ANGLES
@@ -112,15 +112,15 @@ def test_the_tangent_is_that_of_the_stress(phi: float, psi: float) -> None:
     kinds = set[str]()
     for push in (compressed, -3.0 * compressed):
         increment = push + 3e-4 * rng.standard_normal((60, 6))
-        found = law.update(increment, history)
+        update = law.update(increment, history)
         errors = off(law, increment, history)
-        allowed = np.where(np.abs(found.tangent).max(axis=(1, 2)) < 1e-3 * E, 3e-4, 1e-5)  # what is left at the apex
+        allowed = np.where(np.abs(update.tangent).max(axis=(1, 2)) < 1e-3 * E, 3e-4, 1e-5)  # what is left at the apex
         assert np.mean(errors < allowed) > 0.9  # some points lie on a corner of the return
-        elastic = np.abs(found.tangent - mandel.stiffness(law.bulk, law.shear)).max(axis=(1, 2)) == 0.0
-        apex = np.abs(found.stress - C / np.tan(np.radians(phi)) * mandel.UNIT).max(axis=1) < 1e-9 * C
+        elastic = np.abs(update.tangent - mandel.stiffness(law.bulk, law.shear)).max(axis=(1, 2)) == 0.0
+        apex = np.abs(update.stress - C / np.tan(np.radians(phi)) * mandel.UNIT).max(axis=1) < 1e-9 * C
         cone = ~elastic & ~apex
         kinds |= {name for name, of in (("cone", cone), ("apex", apex)) if np.count_nonzero(of) > 9}
-        turned = np.abs(found.tangent - np.swapaxes(found.tangent, 1, 2)).max()
+        turned = np.abs(update.tangent - np.swapaxes(update.tangent, 1, 2)).max()
         assert (turned < 1e-10 * E) == law.symmetric or not cone.any()
     assert kinds == {"cone", "apex"}
 
@@ -153,20 +153,20 @@ def test_closed_cycles_take_work() -> None:
         work: Array = np.zeros(200)
         before = history[:, :6]
         for increment in path[1:]:
-            found = law.update(increment, history)
-            work += mandel.product(found.stress, increment)
-            history = found.history
-        change = mandel.elastic_strain(law.bulk, law.shear, found.stress)
-        stored = 0.5 * mandel.product(found.stress, change)
+            update = law.update(increment, history)
+            work += mandel.product(update.stress, increment)
+            history = update.history
+        change = mandel.elastic_strain(law.bulk, law.shear, update.stress)
+        stored = 0.5 * mandel.product(update.stress, change)
         stored -= 0.5 * mandel.product(before, mandel.elastic_strain(law.bulk, law.shear, before))
         assert np.min(work - stored) > -1e-9 * np.max(np.abs(work))
-    closed = np.abs(found.stress - before).max(axis=1) < 1e-3 * np.abs(before).max(axis=1)
+    closed = np.abs(update.stress - before).max(axis=1) < 1e-3 * np.abs(before).max(axis=1)
     assert np.count_nonzero(closed) > 20
     assert work[closed].min() > -1e-3 * np.abs(work).max()
 
 
 @pytest.mark.parametrize(
-    ("key", "value", "reported"),
+    ("key", "value", "message"),
     [
         ("friction_angle_deg", 75.0, "must be at most 60"),
         ("dilation_angle_deg", 40.0, "must be at most friction_angle_deg"),
@@ -175,11 +175,11 @@ def test_closed_cycles_take_work() -> None:
         ("match", "circle", "plane-strain"),
     ],
 )
-def test_wrong_constants_are_reported(key: str, value: object, reported: str) -> None:
+def test_wrong_constants_are_reported(key: str, value: object, message: str) -> None:
     scene = touchdown()
     right = {"kind": "drucker-prager", "friction_angle_deg": 35.0, "cohesion": 200.0, "E": 1e7}
     scene["soil"]["law"] = right
     scene_from_mapping(scene)
     scene["soil"]["law"] = right | {key: value}
-    with pytest.raises(SceneError, match=reported):
+    with pytest.raises(SceneError, match=message):
         scene_from_mapping(scene)

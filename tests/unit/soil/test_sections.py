@@ -36,11 +36,11 @@ def test_in_air_nothing_floats() -> None:
 
 def test_segments_become_elements_in_order() -> None:
     thin = FLEXIBLE | {"EA": 1.0}
-    found = joined([pipe(10.0, 2, FLOODED, **FLEXIBLE), pipe(3.0, 3, FLOODED, **thin, drag=(1.1, 0.1))])
-    assert found.arc.tolist() == [0.0, 5.0, 10.0, 11.0, 12.0, 13.0]
-    assert found.EA.tolist() == [15.38e8, 15.38e8, 1.0, 1.0, 1.0]
-    assert found.drag.tolist() == [[0.0, 0.0]] * 2 + [[1.1, 0.1]] * 3
-    assert found.mass[0] == pytest.approx(57.5 + 1025.0 * 0.25 * np.pi * 0.2**2)
+    line = joined([pipe(10.0, 2, FLOODED, **FLEXIBLE), pipe(3.0, 3, FLOODED, **thin, drag=(1.1, 0.1))])
+    assert line.arc.tolist() == [0.0, 5.0, 10.0, 11.0, 12.0, 13.0]
+    assert line.EA.tolist() == [15.38e8, 15.38e8, 1.0, 1.0, 1.0]
+    assert line.drag.tolist() == [[0.0, 0.0]] * 2 + [[1.1, 0.1]] * 3
+    assert line.mass[0] == pytest.approx(57.5 + 1025.0 * 0.25 * np.pi * 0.2**2)
 
 
 def test_a_property_that_elements_do_not_have_is_refused() -> None:
@@ -53,8 +53,8 @@ def test_rotary_inertia_of_wall_and_contents() -> None:
     density = 57.5 / (0.25 * np.pi * (0.26**2 - 0.2**2))
     wall, filling = (rho * np.pi / 64.0 for rho in (density, 1025.0))
     exact = wall * (0.26**4 - 0.2**4) + filling * 0.2**4
-    found = [float(flexible(rotary_inertia=given).rotary_inertia[0]) for given in (None, 3.0, 0.0)]
-    assert found == pytest.approx([exact, 3.0, 0.0], rel=1e-14)
+    inertias = [float(flexible(rotary_inertia=given).rotary_inertia[0]) for given in (None, 3.0, 0.0)]
+    assert inertias == pytest.approx([exact, 3.0, 0.0], rel=1e-14)
 
 
 def test_spin_has_inertia_whatever_is_asked_for() -> None:
@@ -64,14 +64,14 @@ def test_spin_has_inertia_whatever_is_asked_for() -> None:
     EI_y, EI_z = 0.3 * 0.1**3 / 12.0 * 2e9, 0.3**3 * 0.1 / 12.0 * 2e9
     strip = pipe(1.0, 1, FLOODED, EA=0.3 * 0.1 * 2e9, EI_y=EI_y, EI_z=EI_z, mass=30.0)
     exact = 30.0 * (0.1**2 + 0.3**2) / 12.0
-    found = [float(each.polar_inertia[0]) for each in (*round_ones, strip)]
-    assert found == pytest.approx([2.0 * across, 6.0, 2.0 * across, exact], rel=1e-14)
+    inertias = [float(each.polar_inertia[0]) for each in (*round_ones, strip)]
+    assert inertias == pytest.approx([2.0 * across, 6.0, 2.0 * across, exact], rel=1e-14)
 
 
 def test_uneven_elements_keep_their_lengths() -> None:
     kind = {"EA": 15.38e8, "EI_y": 20.96e3, "EI_z": 20.96e3}
-    found = joined([elements((1.0, 2.0, 4.0), FLOODED, **kind), elements((1.5, 1.5), FLOODED, **kind)])
-    assert found.arc.tolist() == [0.0, 1.0, 3.0, 7.0, 8.5, 10.0]
+    line = joined([elements((1.0, 2.0, 4.0), FLOODED, **kind), elements((1.5, 1.5), FLOODED, **kind)])
+    assert line.arc.tolist() == [0.0, 1.0, 3.0, 7.0, 8.5, 10.0]
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -48,11 +48,11 @@ def test_slices_take_nothing_from_each_other(along: int) -> None:
     assert set(number) == {0.0, 1.0, 2.0, 3.0}
     after = before + 0.05 * np.random.default_rng(7).uniform(-1.0, 1.0, before.shape)
     after[:, along] = before[:, along]
-    for found in (
+    for result in (
         carried_rows(soil.grid, before, after, number[:, None], ("number",)),
         nearest_rows(soil.grid, before, after, number[:, None], ("number",))[0],
     ):
-        np.testing.assert_array_equal(found[:, 0], number)
+        np.testing.assert_array_equal(result[:, 0], number)
 
 
 @ALONG
@@ -112,7 +112,7 @@ def test_one_section_is_a_slice_of_one_cell(kind: str, strain: str) -> None:
     """
     law = CLAY | {"kind": kind}
     scenes = [sinking(6, 1.0 / 12.0, 10, law, strain=strain, model=model) for model in ("block", "sections")]
-    found = [sink(scene | {"solver": {"load_steps": 10, "tolerance": 1e-11}}) for scene in scenes]
-    np.testing.assert_allclose(found[1].V, found[0].V, rtol=2e-4)
-    assert found[0].renewals == found[1].renewals
-    assert (found[0].renewals > 0) == (strain == "large")
+    runs = [sink(scene | {"solver": {"load_steps": 10, "tolerance": 1e-11}}) for scene in scenes]
+    np.testing.assert_allclose(runs[1].V, runs[0].V, rtol=2e-4)
+    assert runs[0].renewals == runs[1].renewals
+    assert (runs[0].renewals > 0) == (strain == "large")

@@ -23,8 +23,8 @@ class Asked:
 
     def update(self, strain_increment: Array, history: Array, dt: float = math.inf) -> StressUpdate:
         self.times += 1
-        found = self._law.update(strain_increment, history, dt)
-        return found._replace(history=found.history + 1e-9) if self._forgetful else found
+        update = self._law.update(strain_increment, history, dt)
+        return update._replace(history=update.history + 1e-9) if self._forgetful else update
 
 
 def asked_soil(forgetful: bool = False) -> tuple[Soil, Asked]:
@@ -47,7 +47,7 @@ def again(state: State) -> State:
     return State(state.t + 1.0, state.u.copy(), state.v, state.a)
 
 
-def taken(soil: Soil, state: State) -> None:
+def accept(soil: Soil, state: State) -> None:
     for owner in (soil, soil.field):
         owner.commit(state)
 
@@ -58,7 +58,7 @@ def test_the_same_increments_are_answered_once() -> None:
     first = force(soil, state)
     np.testing.assert_array_equal(force(soil, again(state)), first)
     soil.energy(again(state))
-    taken(soil, again(state))
+    accept(soil, again(state))
     assert law.times == 1
 
 
@@ -75,21 +75,21 @@ def test_after_a_step_the_same_increments_lead_on() -> None:
     """From the history that it has left: as soil does that was asked for nothing between."""
     (soil, law), other = asked_soil(), asked_soil()[0]
     state = moved(soil, 5e-3)
-    taken(soil, state)
-    found = force(soil, state)
+    accept(soil, state)
+    forces = force(soil, state)
     assert law.times == 2
     other.restore(soil.state())
-    np.testing.assert_array_equal(force(other, state), found)
+    np.testing.assert_array_equal(force(other, state), forces)
 
 
 def steps_at_rest(soil: Soil, law: Asked, size: float) -> int:
     """How often the law is asked in three steps at rest, after one with increments of this size [m]."""
-    taken(soil, moved(soil, size))
+    accept(soil, moved(soil, size))
     rest = State.at_rest(1.0, soil.field.size)
     force(soil, rest)
     asked = law.times
     for _ in range(3):
-        taken(soil, again(rest))
+        accept(soil, again(rest))
         force(soil, again(rest))
         force(soil, again(rest))
     return law.times - asked
@@ -107,7 +107,7 @@ def test_a_history_that_changes_at_rest_is_asked_again() -> None:
     for step in range(3):
         force(soil, again(rest))
         assert law.times == step + 1
-        taken(soil, again(rest))
+        accept(soil, again(rest))
 
 
 def test_a_state_that_is_restored_is_asked_for() -> None:

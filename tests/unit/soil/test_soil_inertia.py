@@ -92,9 +92,9 @@ def test_frequencies_of_a_shear_column_converge_as_the_theory_has_it() -> None:
     n = 20
     soil = column(n)
     stiffness, mass = (each[moving(soil, 0)][:, moving(soil, 0)].toarray() for each in matrices(soil))
-    found = np.sqrt(scipy.linalg.eigh(stiffness, mass, eigvals_only=True)[:3]) / (2.0 * np.pi)
+    frequencies = np.sqrt(scipy.linalg.eigh(stiffness, mass, eigvals_only=True)[:3]) / (2.0 * np.pi)
     order = np.array([1.0, 3.0, 5.0])
-    off = found / (order * CS / 40.0) - 1.0
+    off = frequencies / (order * CS / 40.0) - 1.0
     np.testing.assert_allclose(off, (0.5 * np.pi * order / n) ** 2 / 24.0, rtol=0.06)
 
 
@@ -147,10 +147,10 @@ def test_parts_are_those_matrices() -> None:
     state = State(0.0, u, v, a)
     ahead = replace(state, u=u + direction, v=v + 30.0 * direction, a=a + 900.0 * direction)
     for part in parts:
-        found = [Forces.zeros(size), Forces.zeros(size)]
-        for each, forces in zip((state, ahead), found, strict=True):
+        matrices = [Forces.zeros(size), Forces.zeros(size)]
+        for each, forces in zip((state, ahead), matrices, strict=True):
             part.residual(each, forces)
-        change = 0.7 * (found[1].inertia - found[0].inertia) + 0.4 * (found[1].force - found[0].force)
+        change = 0.7 * (matrices[1].inertia - matrices[0].inertia) + 0.4 * (matrices[1].force - matrices[0].force)
         block = part.blocks()
         values = {key: each.zeros() for key, each in block.items()}
         part.tangent(state, weights, values)

@@ -87,11 +87,11 @@ def test_scene_with_a_new_soil_law() -> None:
     definitions = json.loads(schema_text())["$defs"]
     assert {"$ref": "#/$defs/OtherElastic"} in definitions["SoilScene"]["properties"]["law"]["anyOf"][0]["oneOf"]
     assert "soil" in describe(scene)
-    for wrong, reported in {
+    for wrong, message in {
         "toys": ("soil.law.kind:", 'value "toys":', f"one of {SOIL_WORDS}, toy;", 'did you mean "toy"'),
         "von-mises": ("soil.law.su:", "missing:", "required"),
     }.items():
-        with pytest.raises(SceneError, match=telling(*reported)):
+        with pytest.raises(SceneError, match=telling(*message)):
             scene_from_mapping(on_soil(ELASTIC | {"kind": wrong}))
     with pytest.raises(SceneError, match=telling("soil.law.stiff:", "no such key", "kind, E, nu")):
         scene_from_mapping(on_soil(ELASTIC | {"kind": "toy", "stiff": 1.0}))

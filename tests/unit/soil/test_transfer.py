@@ -15,16 +15,16 @@ def test_a_new_surface_keeps_the_area_below_it() -> None:
     z = np.where(np.abs(y) < 1.0, -np.sqrt(np.maximum(1.0 - y**2, 0.0)), 0.5 * np.exp(-3.0 * (np.abs(y) - 1.0)))
     line, free = np.stack([0.0 * y, y, z], axis=1), np.abs(y) > 1.05
     top, _ = spread(line, y**3 / 9.0, 0.0 * y)
-    found = refilled(line, top, free, across=1)
+    surface = refilled(line, top, free, across=1)
 
     def area(of: Array) -> float:
         return float(np.sum(0.5 * (of[1:, 2] + of[:-1, 2]) * np.diff(of[:, 1])))
 
     lost = abs(area(top) - area(line))
     assert lost > 1e-3
-    assert abs(area(found) - area(line)) < 0.005 * lost
-    np.testing.assert_array_equal(found[~free], top[~free])
-    np.testing.assert_array_equal(found[[0, -1]], top[[0, -1]])
+    assert abs(area(surface) - area(line)) < 0.005 * lost
+    np.testing.assert_array_equal(surface[~free], top[~free])
+    np.testing.assert_array_equal(surface[[0, -1]], top[[0, -1]])
 
 
 def test_a_lip_that_leans_over_is_cut_where_cells_along_it_would_fold() -> None:

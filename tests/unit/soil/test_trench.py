@@ -48,16 +48,16 @@ def soil_on(grid: DistributedMesh) -> Soil:
 def heights(grid: DistributedMesh, shape: Trench | Groove, across: int) -> tuple[Array, Array]:
     """z of the nodes at the top, and as the scene's formula says."""
     points = soil_on(grid).surface.points
-    reported = [shape.height(point[1 - across], point[across] - 0.2, D) for point in points]
-    return points[:, 2], 1.0 + np.array(reported)
+    expected = [shape.height(point[1 - across], point[across] - 0.2, D) for point in points]
+    return points[:, 2], 1.0 + np.array(expected)
 
 
 @pytest.mark.parametrize(("riser", "across"), [(ALONG_X, 1), (ALONG_Y, 0)])
 def test_trench_has_the_shape_that_the_scene_tells(riser: Any, across: int) -> None:
     grid = dug(IN_PLAIN, riser=riser)
-    found, reported = heights(grid, TRENCH, across)
-    np.testing.assert_allclose(found, reported, atol=1e-9)
-    assert found.min() == pytest.approx(0.6, abs=1e-12)
+    computed, expected = heights(grid, TRENCH, across)
+    np.testing.assert_allclose(computed, expected, atol=1e-9)
+    assert computed.min() == pytest.approx(0.6, abs=1e-12)
     floor, lid = 0.5 * 1.5, (0.5 + 0.8) * (1.5 + 2.0)
     middle = (0.5 + 0.4) * (1.5 + 1.0)
     assert volume(grid) == pytest.approx(6.0 * 3.0 * 1.2 - 0.4 * (floor + 4.0 * middle + lid) / 6.0, rel=1e-12)
@@ -117,8 +117,8 @@ def test_points_of_contact_are_as_near_on_steep_walls() -> None:
     upright = level[:, [0, 2, 1]]
     facet = np.array([[0, 1, 2, 0, 1, 2]])
     for points in (level, upright):
-        found = divisions(points, facet, np.array([1.0, 0.0]), (0.05, 0.01))
-        np.testing.assert_array_equal(found[:, :2], [[20, 20]])
+        counts = divisions(points, facet, np.array([1.0, 0.0]), (0.05, 0.01))
+        np.testing.assert_array_equal(counts[:, :2], [[20, 20]])
 
 
 def test_points_along_the_riser_are_no_more_than_elements_and_cells_ask_for() -> None:
@@ -126,8 +126,8 @@ def test_points_along_the_riser_are_no_more_than_elements_and_cells_ask_for() ->
     points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.1, 0.0], [0.0, 0.1, 0.0]])
     facet, along = np.array([[0, 1, 2, 3]]), np.array([1.0, 0.0])
     for element, wanted in ((0.0, 50), (0.5, 24), (1.0, 12), (7.0, 12), (0.1, 50)):
-        found = divisions(points, facet, along, (0.02, 0.01), element)
-        np.testing.assert_array_equal(found[:, :2], [[wanted, 10]])
+        counts = divisions(points, facet, along, (0.02, 0.01), element)
+        np.testing.assert_array_equal(counts[:, :2], [[wanted, 10]])
 
 
 def test_stretch_of_a_steep_wall_is_that_of_its_own_plane() -> None:
@@ -182,7 +182,7 @@ def test_what_makes_no_sense_is_refused_in_one_line(name: str) -> None:
 def test_an_end_may_lie_in_the_trench() -> None:
     made = scene({"trench": {**CUT, "along": [2.5, 6.0]}})
     made["riser"]["start"]["position"] = [3.0, 0.0, -0.15]
-    found = scene_from_mapping(made)
-    assert ground_height(found, (3.0, 0.0, 0.0)) == pytest.approx(-0.3)
-    assert isclose(ground_height(found, (3.0, 0.9, 0.0)), 0.0)
-    assert isclose(ground_height(found, (1.0, 0.0, 0.0)), 0.0)
+    checked = scene_from_mapping(made)
+    assert ground_height(checked, (3.0, 0.0, 0.0)) == pytest.approx(-0.3)
+    assert isclose(ground_height(checked, (3.0, 0.9, 0.0)), 0.0)
+    assert isclose(ground_height(checked, (1.0, 0.0, 0.0)), 0.0)

@@ -45,8 +45,8 @@ def both(way: str) -> tuple[SoilCells, Cells, DistributedMesh]:
     return SoilCells(grid), cells_of(grid.family, grid.nodes.points, grid.nodes.cells), grid
 
 
-def off(found: Array, exact: Array) -> float:
-    return float(np.abs(found.ravel() - exact.ravel()).max() / np.abs(exact).max())
+def off(values: Array, exact: Array) -> float:
+    return float(np.abs(values.ravel() - exact.ravel()).max() / np.abs(exact).max())
 
 
 def of_cells(grid: DistributedMesh, u: Array) -> Array:
@@ -99,15 +99,15 @@ def test_kernels_give_the_same_bits_wherever_arrays_lie(family: Family) -> None:
     nq = len(family.quadrature[1])
     at, moduli = np.zeros((1, family.values.shape[1], 3)), RNG.normal(size=(1, nq * 36))
     at[0, :, : len(family.axes)] = reference_nodes(family) + RNG.uniform(-0.1, 0.1, (len(at[0]), len(family.axes)))
-    none, found = np.empty((1, 0)), []
+    none, results = np.empty((1, 0)), []
     for place in range(8):
         given, there = shifted(moduli, place), shifted(at, 7 - place)
         out = shifted(np.zeros((1, n, n)), place // 2)
         cell_loops.renew_matrices(kernels.tangent, there, none, np.ones(1), given, np.full_like(given, np.nan), out)
-        found.append(out.copy())
+        results.append(out.copy())
         assert np.abs(out).max() > 0.0
-    for out in found[1:]:
-        np.testing.assert_array_equal(out, found[0])
+    for out in results[1:]:
+        np.testing.assert_array_equal(out, results[0])
 
 
 def shifted(values: Array, places: int) -> Array:

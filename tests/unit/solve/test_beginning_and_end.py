@@ -44,16 +44,16 @@ def test_the_last_accepted_step_is_in_all_files(
     failing_after.append(end)
     with pytest.raises(type(end)):
         run(scene_from_mapping(mapping), str(tmp_path))
-    found = Run(tmp_path)
-    assert not found.finished
-    assert found.time == pytest.approx([0.0, 0.7])
-    stage = found.summary["stages"][1]
+    results = Run(tmp_path)
+    assert not results.finished
+    assert results.time == pytest.approx([0.0, 0.7])
+    stage = results.summary["stages"][1]
     assert (stage["steps"], stage["time"]) == (7, pytest.approx(0.7))
-    assert stage["final"]["end"]["force"] == found["end_force"][-1].tolist()
+    assert stage["final"]["end"]["force"] == results["end_force"][-1].tolist()
     if soil:
-        assert found.soil_times.tolist() == found.time.tolist()
-        assert found.soil_frame().fields["displacement"][:, 2].min() < 0.0
-        first, last = (found.soil_frame(number).fields["displacement"] for number in (0, 1))
+        assert results.soil_times.tolist() == results.time.tolist()
+        assert results.soil_frame().fields["displacement"][:, 2].min() < 0.0
+        first, last = (results.soil_frame(number).fields["displacement"] for number in (0, 1))
         assert not np.array_equal(first, last)
 
 
@@ -61,8 +61,8 @@ def test_a_run_that_begins_in_motion_has_its_beginning(tmp_path: Path) -> None:
     mapping: Mapping = touchdown(heave(0.3)) | {"output": {"interval": 0.1}}
     del mapping["soil"]
     run(scene_from_mapping(mapping), tmp_path)
-    found = Run(tmp_path)
-    assert found.time == pytest.approx([0.0, 0.1, 0.2, 0.3])
-    assert found["position"][0, -1] == pytest.approx([22.5, 0.0, 15.0])
-    assert np.all(np.isfinite(found["bending_moment"][0]))
-    assert found.summary["stages"][0]["steps"] == 3
+    results = Run(tmp_path)
+    assert results.time == pytest.approx([0.0, 0.1, 0.2, 0.3])
+    assert results["position"][0, -1] == pytest.approx([22.5, 0.0, 15.0])
+    assert np.all(np.isfinite(results["bending_moment"][0]))
+    assert results.summary["stages"][0]["steps"] == 3

@@ -68,8 +68,8 @@ def test_it_solves(chain: int, border: int, band: int, touched: slice) -> None:
     load = np.random.default_rng(8).normal(size=chain + border)
     factors, stored = solver(entries, chain, border)
     for scale in (1.0, 2.0):  # the factors are renewed with the matrix
-        found, expected = factors.solve(load), np.linalg.solve(scale * entries, load)
-        assert np.abs(found - expected).max() < 1e-9 * np.abs(expected).max()
+        solution, expected = factors.solve(load), np.linalg.solve(scale * entries, load)
+        assert np.abs(solution - expected).max() < 1e-9 * np.abs(expected).max()
         stored.scale(2.0)
 
 
@@ -87,9 +87,9 @@ def test_rows_of_the_border_may_lie_anywhere() -> None:
     mixed = np.random.default_rng(9).permutation(37)
     given: Any = Stored(entries[np.ix_(mixed, mixed)])
     at = np.argsort(mixed)  # where each of the rows is now
-    found = BorderedBand(given, at[:30], at[30:]).solve(load[mixed])
+    solution = BorderedBand(given, at[:30], at[30:]).solve(load[mixed])
     expected = np.linalg.solve(entries, load)[mixed]
-    assert np.abs(found - expected).max() < 1e-9 * np.abs(expected).max()
+    assert np.abs(solution - expected).max() < 1e-9 * np.abs(expected).max()
 
 
 @pytest.mark.parametrize("border", [0, 7])

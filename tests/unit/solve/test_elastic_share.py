@@ -44,11 +44,11 @@ def test_what_crawls_under_the_elastic_tangent_is_in_vain() -> None:
         share.adapt(0.95, 1.0)
     for n in range(6):
         share.adapt(n + 2.0, n + 1.0)  # up to all of it
-    told = []
+    messages = []
     for norm in (0.95, 0.95, 0.95, 1.5, 0.95, 0.91, 0.95, 0.99):
         share.adapt(norm, 1.0)
-        told.append(share.in_vain)
-    assert told == 7 * [False] + [True]
+        messages.append(share.in_vain)
+    assert messages == 7 * [False] + [True]
     share.reset()
     assert not share.in_vain
 

@@ -27,7 +27,7 @@ def test_a_step_that_makes_much_is_rejected() -> None:
 
 
 @pytest.mark.parametrize(
-    ("was", "now", "dissipated", "work", "reported"),
+    ("was", "now", "dissipated", "work", "reason"),
     [
         (Energy(kinetic=100.0), Energy(kinetic=125.0), 0.0, 0.0, "25 J out of nothing, beside 100 J"),
         (Energy(strain=100.0), Energy(kinetic=125.0), 0.0, 0.0, "25 J out of nothing, beside 100 J"),
@@ -37,9 +37,9 @@ def test_a_step_that_makes_much_is_rejected() -> None:
     ],
 )
 def test_in_motion_is_what_moves_is_strained_falls_or_goes_through_supports(
-    was: Energy, now: Energy, dissipated: float, work: float, reported: str
+    was: Energy, now: Energy, dissipated: float, work: float, reason: str
 ) -> None:
-    assert reported in EnergyGain(STILL).rejection(was, now, dissipated, work, 0.0)
+    assert reason in EnergyGain(STILL).rejection(was, now, dissipated, work, 0.0)
 
 
 def test_steps_that_make_a_little_each_are_rejected_once_their_sum_is_too_much() -> None:

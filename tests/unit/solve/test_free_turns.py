@@ -130,13 +130,13 @@ def test_a_prescribed_turn_leaves_newton_a_regular_matrix() -> None:
     """The smallest eigenvalue of the scaled tangent is one of bending, and not that of the turn."""
     assembly = hanging(0.0)
     with started(assembly) as (system, _):
-        state, found = State.at_rest(1.0, assembly.size), list[float]()
+        state, turns = State.at_rest(1.0, assembly.size), list[float]()
         for least in (0.0, 1e-4 * 6e3):
             system.assemble(state, Static().weights(0.0))
             stability.prescribe_free_turns(system, state, least)
             starts, columns, values = system.matrix.stored.csr()
             K = csr_matrix((values, columns, starts)).toarray()
             d = np.sqrt(np.diag(K))
-            found.append(float(np.linalg.eigvalsh(K / np.outer(d, d))[0]))
-    assert found[1] > 0.0
-    assert abs(found[0]) < 1e-3 * found[1]
+            turns.append(float(np.linalg.eigvalsh(K / np.outer(d, d))[0]))
+    assert turns[1] > 0.0
+    assert abs(turns[0]) < 1e-3 * turns[1]

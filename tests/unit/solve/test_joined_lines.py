@@ -111,13 +111,13 @@ def test_steps_are_those_of_snes(case: str, monkeypatch: pytest.MonkeyPatch) -> 
         stage.walk(STEPS)
     # Stiff joints leave round-off near the tolerance: either may take an iteration more in a step.
     assert abs(compiled.iterations - snes.iterations) <= 0.25 * snes.iterations
-    found, expected = compiled.stepper, snes.stepper
+    computed, expected = compiled.stepper, snes.stepper
     for field in snes.system.model.lines:
         rates, at = expected.before.v, slice(field.offset, field.offset + field.size)
         assert np.abs(rates[at]).max() > 1e-2, field.name
-        np.testing.assert_allclose(found.before.v[at], rates[at], rtol=0.0, atol=1e-6, err_msg=field.name)
+        np.testing.assert_allclose(computed.before.v[at], rates[at], rtol=0.0, atol=1e-6, err_msg=field.name)
     for mine, other in zip(compiled.assembly.lines.values(), snes.assembly.lines.values(), strict=True):
-        place, wanted = mine.line.positions3(found.before), other.line.positions3(expected.before)
+        place, wanted = mine.line.positions3(computed.before), other.line.positions3(expected.before)
         np.testing.assert_allclose(place, wanted, rtol=0.0, atol=1e-8)
         sections, by_snes = (
             SectionForces(own.line, own.elements, stage.newton.accepted.section_input(own.line, stage.stepper.now))
@@ -126,7 +126,7 @@ def test_steps_are_those_of_snes(case: str, monkeypatch: pytest.MonkeyPatch) -> 
         for name in ("force", "moment", "end_force"):
             values, wanted = getattr(sections, name), getattr(by_snes, name)
             np.testing.assert_allclose(values, wanted, rtol=0.0, atol=1e-5 * np.abs(wanted).max())
-    assert found.energy.total == pytest.approx(expected.energy.total, rel=1e-9)
+    assert computed.energy.total == pytest.approx(expected.energy.total, rel=1e-9)
     for name, work in snes._taken.turned.items():
         mine_turned = [*vars(compiled._taken.turned[name]).values()]
         np.testing.assert_allclose(mine_turned, [*vars(work).values()], rtol=1e-5, atol=1e-5)
@@ -264,16 +264,16 @@ def test_statics_and_steps_eliminate_the_fewest_rows_that_joints_have(case: str,
     assembly = build(scene, MPI.COMM_SELF)
     lay(assembly, Timer.new())
     system = System(assembly.comm, assembly.begin(scene.stages[0]), Timer.new())
-    found = band_of(system)
-    assert found is not None
-    assert len(found.rows[1]) == border
+    band = band_of(system)
+    assert band is not None
+    assert len(band.rows[1]) == border
     stage = last_stage(case, "compiled")
     assert stage.newton.lines is not None
     in_steps = next(each for each in stage.newton.lines.packed.couplings if isinstance(each, DenseBorder))
     assert len(in_steps.of[stage.newton.lines.packed.lines[0]].value.residual) == border
     load = np.random.default_rng(3).normal(size=system.numbering.free)
     system.assemble(State.at_rest(0.0, system.numbering.size), STATIC)
-    answer = found.solve(load)
+    answer = band.solve(load)
     starts, columns, values = system.matrix.stored.csr()
     terms = np.add.reduceat(np.abs(values * answer[columns]), starts[:-1])  # of each row's product
     assert np.abs(system.matrix.stored.times(answer) - load).max() < 1e-10 * terms.max()

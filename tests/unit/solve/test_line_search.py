@@ -59,10 +59,10 @@ def test_a_slope_half_as_steep_as_at_the_start_is_too_far() -> None:
     assert step_length(-1.0, partial(linear, 0.51)) == pytest.approx(1.0 / 1.51)
 
 
-@pytest.mark.parametrize(("found", "looks"), [(0.24, 2), (-0.24, 2), (0.26, 3), (-0.26, 3)])
-def test_a_quarter_of_the_slope_at_the_start_is_near_enough(found: float, looks: int) -> None:
+@pytest.mark.parametrize(("ratio", "looks"), [(0.24, 2), (-0.24, 2), (0.26, 3), (-0.26, 3)])
+def test_a_quarter_of_the_slope_at_the_start_is_near_enough(ratio: float, looks: int) -> None:
     """The first place looked at is the middle, as far from zero at both ends; a straight line leads on from there."""
-    slope, looked = counted(lambda a: float(np.interp(a, (0.0, 0.5, 1.0), (-1.0, found, 1.0))))
+    slope, looked = counted(lambda a: float(np.interp(a, (0.0, 0.5, 1.0), (-1.0, ratio, 1.0))))
     step_length(-1.0, slope)
     assert len(looked) == looks
 
@@ -131,8 +131,8 @@ def test_forces_of_a_full_step_are_evaluated_once(monkeypatch: pytest.MonkeyPatc
 
     monkeypatch.setattr(system, "forces", counted)
     newton = Newton(system, NewtonSettings(1e-10, 20, 1e-12, line_search=True))
-    found = newton.solve(Step(Static(), State(0.0, z, z.copy(), z.copy()), 1.0, 1.0, None, z.copy()))
-    assert found.iterations == 1
+    solution = newton.solve(Step(Static(), State(0.0, z, z.copy(), z.copy()), 1.0, 1.0, None, z.copy()))
+    assert solution.iterations == 1
     assert len(evaluated) == 2
     newton.destroy()
     system.destroy()

@@ -84,10 +84,10 @@ def test_narrow_and_short_bands_are_solved_for(n: int, b: int) -> None:
         for j in range(max(0, i - b), min(n, i + b + 1)):
             dense[i, j] += rng.normal()
             ab[i, j - i + b] = dense[i, j]
-    found = load.copy()
+    solution = load.copy()
     assert banded.factorise(ab, pivots, band)
-    banded.solve(ab, pivots, found, band)
-    np.testing.assert_allclose(found, np.linalg.solve(dense, load), rtol=1e-12)
+    banded.solve(ab, pivots, solution, band)
+    np.testing.assert_allclose(solution, np.linalg.solve(dense, load), rtol=1e-12)
 
 
 @pytest.mark.parametrize(("n", "b"), [(40, 5), (66, 11)])
@@ -99,13 +99,13 @@ def test_fill_of_some_rows_alone_is_solved_for(n: int, b: int) -> None:
         for j in range(max(0, i - b), min(n, i + b + 1)):
             ab[i, j - i + b] = dense[i, j] = rng.normal() * (0.01 if i > j else 1.0) + (9.0 if i == j else 0.0)
     ab[n // 2 + b, 0] = dense[n // 2 + b, n // 2] = 1e4  # beside a pivot that is far smaller
-    found = load.copy()
+    solution = load.copy()
     assert banded.factorise(ab, pivots, band)
     assert pivots[n // 2] == n // 2 + b
     assert (pivots[: n // 2] == np.arange(n // 2)).all()
     assert (pivots[n // 2 + b + 1 :] == np.arange(n // 2 + b + 1, n)).all()
-    banded.solve(ab, pivots, found, band)
-    np.testing.assert_allclose(found, np.linalg.solve(dense, load), rtol=1e-9, atol=1e-12)
+    banded.solve(ab, pivots, solution, band)
+    np.testing.assert_allclose(solution, np.linalg.solve(dense, load), rtol=1e-9, atol=1e-12)
 
 
 def test_rows_stay_where_their_pivots_are_large_enough() -> None:
@@ -128,7 +128,7 @@ def test_a_singular_matrix_is_reported(wrong: float) -> None:
 
 
 def test_a_step_that_fails_says_why_as_snes_does() -> None:
-    reported = []
+    messages = []
     for newton in ("compiled", "snes"):
         stage = walked("surge in a plane", newton, 1)
         asked = stage.newton if stage.newton.lines is not None else stage.newton.by_parts
@@ -137,8 +137,8 @@ def test_a_step_that_fails_says_why_as_snes_does() -> None:
             stage.newton.by_parts.loop.max_iterations = 1
         with pytest.raises(SolveError, match="no convergence") as failure:
             stage.walk(200)
-        reported.append(str(failure.value))
-    assert reported[0] == reported[1]
+        messages.append(str(failure.value))
+    assert messages[0] == messages[1]
 
 
 @pytest.mark.parametrize(

@@ -52,9 +52,9 @@ def scene(case: str, newton: str) -> Mapping:
     return mapping
 
 
-def taken(case: str, newton: str) -> list[dict[str, Array]]:
+def states_of(case: str, newton: str) -> list[dict[str, Array]]:
     """What each accepted step of the dynamic stage tells."""
-    assembly, reported = built(scene(case, newton)), list[dict[str, Array]]()
+    assembly, states = built(scene(case, newton)), list[dict[str, Array]]()
     contact, line, condensed = soil_under(assembly).contact, assembly.riser.line, soil_under(assembly).condensed
     assert contact is not None
     assert condensed is not None
@@ -62,7 +62,7 @@ def taken(case: str, newton: str) -> list[dict[str, Array]]:
     def tell(system: System, step: AcceptedStep) -> None:
         state = step.solution.state
         works = [vars(work)[name] for work in step.turned.values() for name in ("dissipated", "external", "by_scheme")]
-        reported.append(
+        states.append(
             {
                 "positions": line.positions3(state),
                 "rates": np.concatenate([state.v, state.a * step.dt]),
@@ -78,21 +78,21 @@ def taken(case: str, newton: str) -> list[dict[str, Array]]:
     before = run_stage(assembly, lay, before, Watcher(), Timer.new())
     with before_commit(tell):
         run_stage(assembly, move, before, Watcher(), Timer.new())
-    return reported
+    return states
 
 
 @cache
 def by_snes(case: str) -> list[dict[str, Array]]:
-    return taken(case, "snes")
+    return states_of(case, "snes")
 
 
-def assert_same(found: list[dict[str, Array]], wanted: list[dict[str, Array]]) -> None:
-    assert len(found) == len(wanted) == 8
+def assert_same(states: list[dict[str, Array]], wanted: list[dict[str, Array]]) -> None:
+    assert len(states) == len(wanted) == 8
     for name in wanted[0]:
         size = max(float(np.abs(each[name]).max()) for each in wanted)
         assert size > 0.0
-        for got, reported in zip(found, wanted, strict=True):
-            assert np.abs(got[name] - reported[name]).max() < SAME * size, name
+        for got, expected in zip(states, wanted, strict=True):
+            assert np.abs(got[name] - expected[name]).max() < SAME * size, name
 
 
 def forbid(patch: pytest.MonkeyPatch) -> None:
@@ -105,7 +105,7 @@ def forbid(patch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("case", MARKED)
 def test_the_loop_finds_what_newton_finds(case: str, monkeypatch: pytest.MonkeyPatch) -> None:
     forbid(monkeypatch)
-    assert_same(taken(case, "compiled"), by_snes(case))
+    assert_same(states_of(case, "compiled"), by_snes(case))
 
 
 def test_steps_that_it_cannot_solve_are_left_to_newton(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -117,7 +117,7 @@ def test_steps_that_it_cannot_solve_are_left_to_newton(monkeypatch: pytest.Monke
         return usual(loop, trial, limits) if len(asked) % 2 else ("left to Newton", [])
 
     monkeypatch.setattr(LineSolver, "_iterate", iterate)
-    assert_same(taken("in a plane", "compiled"), by_snes("in a plane"))
+    assert_same(states_of("in a plane", "compiled"), by_snes("in a plane"))
     assert len(asked) == 8
 
 
@@ -135,23 +135,23 @@ def test_what_is_watched_follows_the_riser(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr("riser_soil.contact.surface_contact.FEW", 4)
     monkeypatch.setattr("riser_soil.contact.near_points.FEW", 2)
     monkeypatch.setattr("riser_soil.contact.surface_contact.AROUND", 0.05)
-    found = taken("in a plane", "compiled")
+    states = states_of("in a plane", "compiled")
     assert len(begun) > 12
-    assert_same(found, by_snes("in a plane"))
+    assert_same(states, by_snes("in a plane"))
 
 
 def test_soil_that_moves_beyond_what_is_watched_is_left_to_newton(monkeypatch: pytest.MonkeyPatch) -> None:
-    left, usual = list[LineSolver](), LineSolver.leave_to_parts
+    departures, usual = list[LineSolver](), LineSolver.leave_to_parts
 
     def count(loop: LineSolver) -> bool:
-        left.append(loop)
+        departures.append(loop)
         return usual(loop)
 
     monkeypatch.setattr(LineSolver, "leave_to_parts", count)
     monkeypatch.setattr("riser_soil.contact.condensed_contact.SHARE", 1e-4)
-    found = taken("in a plane", "compiled")
-    assert len(left) > 0
-    assert_same(found, by_snes("in a plane"))
+    states = states_of("in a plane", "compiled")
+    assert len(departures) > 0
+    assert_same(states, by_snes("in a plane"))
 
 
 def at_first_step(case: str) -> tuple[LineSystem, System]:
@@ -160,11 +160,11 @@ def at_first_step(case: str) -> tuple[LineSystem, System]:
     lay, move = assembly.scene.stages
     before = run_stage(assembly, lay, State.at_rest(0.0, assembly.size), Watcher(), Timer.new())
     system = System(assembly.comm, assembly.begin(move), Timer.new())
-    found = solver_of(system, SCHEME.dynamic, SETTINGS)
-    assert found.lines is not None
+    solver = solver_of(system, SCHEME.dynamic, SETTINGS)
+    assert solver.lines is not None
     guess = np.zeros(assembly.size)
-    found.solve(Step(SCHEME, before, 0.01, 0.01, None, guess))
-    return found.lines.packed, system
+    solver.solve(Step(SCHEME, before, 0.01, 0.01, None, guess))
+    return solver.lines.packed, system
 
 
 @pytest.mark.parametrize("case", MARKED)
@@ -215,16 +215,16 @@ def test_elastic_soil_adheres_without_a_limit() -> None:
 
 
 @pytest.mark.parametrize(
-    ("moved", "left"),
+    ("moved", "outside"),
     [((0.0, 0.0, 0.0), False), ((0.2, 0.0, 0.0), True), ((0.0, -0.2, 0.0), True), ((0.0, 0.0, -0.2), True)],
 )
 @pytest.mark.parametrize("above", [False, True])
 def test_an_element_that_leaves_its_box_is_noticed_unless_it_is_above_the_soil(
-    moved: tuple[float, float, float], left: bool, above: bool
+    moved: tuple[float, float, float], outside: bool, above: bool
 ) -> None:
     q = np.array([[[0.0, 0.0, 0.1], [1.0, 0.0, 0.0], [1.0, 0.0, 0.1], [1.0, 0.0, 0.0]]])
     low, high = boxes(Axis(q, np.ones(1), np.full(1, 0.1)), 0.1, 0.1)
     q[:, ::2] += np.array(moved)
     none = np.empty(0, dtype=np.int64)
     watched = Watched(PairsByFacet(none, none, none), low, high, -1.0 if above else 1.0)
-    assert leaves(Axis(q, np.ones(1), np.full(1, 0.1)), watched, 0.0) == (left and not above)
+    assert leaves(Axis(q, np.ones(1), np.full(1, 0.1)), watched, 0.0) == (outside and not above)

@@ -73,9 +73,9 @@ def test_springs_without_stiffness_fail_and_others_after_them_do_not(
     script.write_text(SCRIPT)
     done = mpirun(ranks, str(script), how)
     assert done.returncode == 0, done.stderr
-    reported = done.stdout.strip().split("; ")  # more or less of what MUMPS says, by PETSc's version
+    messages = done.stdout.strip().split("; ")  # more or less of what MUMPS says, by PETSc's version
     expected = ["-0.600000000", failure, "-0.600000000", failure, failure, "-1.200000000"]
-    assert [text[: len(start)] for text, start in zip(reported, expected, strict=True)] == expected
+    assert [text[: len(start)] for text, start in zip(messages, expected, strict=True)] == expected
 
 
 HELD = '''

@@ -33,16 +33,16 @@ def steps(law: Mapping | None, pressed: float, up: float = 0.0, asked: int = 1) 
     scene["solver"] = {"load_steps": asked}
     if law is not None:
         scene["soil"]["law"] = law
-    assembly, taken = built(scene), list[float]()
+    assembly, sizes = built(scene), list[float]()
 
     def watch(system: System, step: AcceptedStep) -> None:
-        taken.append(step.dt)
+        sizes.append(step.dt)
 
     before = take(assembly, assembly.scene.stages[0])
     stage = assembly.scene.stages[1]
     assert isinstance(stage, StaticStage)
     take(assembly, stage, before, watch)
-    return len(taken)
+    return len(sizes)
 
 
 @pytest.mark.parametrize(("law", "expected"), [(None, 1), (CLAY, 5)], ids=["elastic", "clay"])
@@ -90,10 +90,10 @@ def test_relaxation_that_fails_on_its_way_leaves_clay_and_riser_as_they_were(mon
     """It has pressed the pipe into clay by a tenth of its diameter when it gives up."""
     scene = slice_of_soil(2)
     scene["soil"]["law"] = CLAY
-    assembly, seen, usual = built(scene), list[Saved](), TimeStepper.advance
+    assembly, saved, usual = built(scene), list[Saved](), TimeStepper.advance
 
     def relaxed(comm: object, model: Model, *_: object) -> RelaxationResult:
-        seen.append(gathered(owners(model)))
+        saved.append(gathered(owners(model)))
         pressed = State.at_rest(0.0, assembly.size)
         pressed.u[assembly.riser.line.translation_dofs[:, -1]] = -0.1 * D
         assert assembly.soil is not None
@@ -102,20 +102,20 @@ def test_relaxation_that_fails_on_its_way_leaves_clay_and_riser_as_they_were(mon
         for owner in committing:
             owner.commit(pressed)
         moved = gathered(owners(model))
-        assert all((moved[name] != seen[0][name]).any() for name in ("fields/riser/x", "parts/soil/law/stress"))
+        assert all((moved[name] != saved[0][name]).any() for name in ("fields/riser/x", "parts/soil/law/stress"))
         raise SolveError("no rest was found")
 
     def advance(stepper: TimeStepper, control: Control, most_cuts: int | None = None) -> AcceptedStep:
-        if not seen:
+        if not saved:
             raise SolveError("no convergence")
-        if len(seen) == 1:
-            seen.append(gathered(owners(stepper.system.model)))
+        if len(saved) == 1:
+            saved.append(gathered(owners(stepper.system.model)))
         return usual(stepper, control, most_cuts)
 
     monkeypatch.setattr(stages, "relax", relaxed)
     monkeypatch.setattr(TimeStepper, "advance", advance)
     take(assembly, assembly.scene.stages[0])
-    before, after = seen
+    before, after = saved
     assert set(before) == set(after)
     for name, value in before.items():
         assert after[name] == pytest.approx(value), name

@@ -61,13 +61,13 @@ def walk(
     system = System(MPI.COMM_SELF, Model([chain], parts), Timer.new())
     newton = Newton(system, NewtonSettings(1e-10, 30, 1e-11))
     stepper = TimeStepper(system, newton, scheme, State(0.0, 0.0 * v0, v0.copy(), 0.0 * v0))
-    seen = [(chain.z.copy(), v0.copy())]
+    path = [(chain.z.copy(), v0.copy())]
     while not steps.finished:
         stepper.commit(stepper.advance(steps), steps)
-        seen.append((chain.z.copy(), stepper.before.v.copy()))
+        path.append((chain.z.copy(), stepper.before.v.copy()))
     newton.destroy()
     system.destroy()
-    return seen
+    return path
 
 
 def swing(scheme: GeneralizedAlpha, sizes: Array) -> tuple[list[tuple[Array, Array]], Given]:
@@ -85,16 +85,16 @@ def exactly(z: float, v: float, dt: float) -> float:
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_estimate_is_the_error_of_one_step(scheme: GeneralizedAlpha) -> None:
     dt = 0.01
-    seen, steps = swing(scheme, np.full(60, dt))
+    path, steps = swing(scheme, np.full(60, dt))
     after = 20  # steps until the scheme's own accelerations are in line
-    errors = [abs(b[0][1] - exactly(a[0][1], a[1][1], dt)) for a, b in pairwise(seen[after:])]
+    errors = [abs(b[0][1] - exactly(a[0][1], a[1][1], dt)) for a, b in pairwise(path[after:])]
     np.testing.assert_allclose(steps.errors[after:], errors, atol=0.05 * max(errors))
 
 
 def off_after_uneven_steps(scheme: GeneralizedAlpha, size: float) -> float:
     sizes = size * np.resize([1.0, 0.4, 0.7, 0.3, 0.9], round(6.6 / size))
-    seen, _ = swing(scheme, sizes * 3.0 / sizes.sum())
-    return abs(float(seen[-1][0][1]) - exactly(1.0, 1.0, 3.0))
+    path, _ = swing(scheme, sizes * 3.0 / sizes.sum())
+    return abs(float(path[-1][0][1]) - exactly(1.0, 1.0, 3.0))
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)

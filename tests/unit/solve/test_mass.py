@@ -37,6 +37,6 @@ def test_nodes_that_move_in_all_directions_are_projected_without_round_off() -> 
     blocks = half @ np.swapaxes(half, 1, 2)
     free = np.ones(15, dtype=bool)
     free[:3] = False
-    found = projectors(blocks, free)
-    assert np.array_equal(found[1:], np.broadcast_to(np.eye(3), (4, 3, 3)))
-    assert np.array_equal(found[0], np.zeros((3, 3)))
+    matrices = projectors(blocks, free)
+    assert np.array_equal(matrices[1:], np.broadcast_to(np.eye(3), (4, 3, 3)))
+    assert np.array_equal(matrices[0], np.zeros((3, 3)))

@@ -53,10 +53,10 @@ def none_left() -> Iterator[None]:
 
 
 def test_monitors_print_the_norms(capfd: pytest.CaptureFixture[str]) -> None:
-    found = solved(snes_monitor=True, snes_converged_reason=None)
+    solution = solved(snes_monitor=True, snes_converged_reason=None)
     *printed, reason = capfd.readouterr().out.splitlines()
-    assert [float(line.split()[-1]) for line in printed] == pytest.approx(found.norms, rel=1e-9)
-    line_with(reason, PREFIX, "CONVERGED_FNORM_RELATIVE", f"iterations {found.iterations}")
+    assert [float(line.split()[-1]) for line in printed] == pytest.approx(solution.norms, rel=1e-9)
+    line_with(reason, PREFIX, "CONVERGED_FNORM_RELATIVE", f"iterations {solution.iterations}")
 
 
 @pytest.mark.parametrize(
@@ -133,11 +133,11 @@ def test_the_tangent_is_that_of_the_residual_by_petsc_s_own_test(capfd: pytest.C
 
 def test_a_linear_solver_of_petsc_takes_the_place_of_the_project_s(capfd: pytest.CaptureFixture[str]) -> None:
     """As exact as Newton's method asks for."""
-    found = solved(ksp_type="gmres", pc_type="none", ksp_converged_reason=True)
+    solution = solved(ksp_type="gmres", pc_type="none", ksp_converged_reason=True)
     printed = capfd.readouterr().out.splitlines()
-    assert len(printed) == found.iterations == solved().iterations
+    assert len(printed) == solution.iterations == solved().iterations
     assert all("iterations 0" not in line for line in printed)
-    np.testing.assert_allclose(found.state.u, solved().state.u, rtol=0.0, atol=1e-9)
+    np.testing.assert_allclose(solution.state.u, solved().state.u, rtol=0.0, atol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -184,9 +184,9 @@ def test_a_matrix_that_lacks_places_ends_the_iteration_and_leaves_snes_usable(
 
     monkeypatch.setattr(StepIteration, "tangent", tangent)
     monkeypatch.setattr(StepIteration, "_renew", renew)
-    found = solved()
+    solution = solved()
     assert rests == [1]
-    assert found.norms == pytest.approx(expected.norms, rel=1e-9)
+    assert solution.norms == pytest.approx(expected.norms, rel=1e-9)
 
 
 ON_RANKS = '''

@@ -27,19 +27,19 @@ def system() -> Iterator[System]:
 @pytest.fixture
 def asked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """What has been factorised: "whole" or "soil"."""
-    found, usual, behind = list[str](), stability.negative_pivots, direct_solver.negative_pivots_behind
+    calls, usual, behind = list[str](), stability.negative_pivots, direct_solver.negative_pivots_behind
 
     def of_whole(system: System) -> int:
-        found.append("whole")
+        calls.append("whole")
         return usual(system)
 
     def of_soil(system: System, rows: int) -> int:
-        found.append("soil")
+        calls.append("soil")
         return behind(system, rows)
 
     monkeypatch.setattr(stability, "negative_pivots", of_whole)
     monkeypatch.setattr(direct_solver, "negative_pivots_behind", of_soil)
-    return found
+    return calls
 
 
 def lower(system: System, first: int, count: int) -> None:

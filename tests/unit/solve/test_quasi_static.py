@@ -66,11 +66,11 @@ def test_tension_is_that_of_each_equilibrium_on_the_way(tmp_path: Path) -> None:
     """EA u/L at each record, u being straight between the table's rows; the clock is the table's."""
     stage = quasi_static(4.0, "cycles", time_step=0.4, motion=PULLED)
     run(scene(tmp_path, stage, output={"interval": 0.5}), tmp_path / "out")
-    reported = Run(tmp_path / "out")
-    assert reported.time == pytest.approx(np.arange(0.0, 4.01, 0.5))
-    assert reported["position"][:, -1, 0] == pytest.approx(L + saw(reported.time), abs=1e-12)
-    assert reported["effective_tension"][:, 0] == pytest.approx(EA * saw(reported.time) / L, rel=1e-6, abs=1e-6)
-    assert reported["kinetic_energy"].max() == 0.0
+    results = Run(tmp_path / "out")
+    assert results.time == pytest.approx(np.arange(0.0, 4.01, 0.5))
+    assert results["position"][:, -1, 0] == pytest.approx(L + saw(results.time), abs=1e-12)
+    assert results["effective_tension"][:, 0] == pytest.approx(EA * saw(results.time) / L, rel=1e-6, abs=1e-6)
+    assert results["kinetic_energy"].max() == 0.0
 
 
 def test_summary_has_the_extremes_over_the_stage_and_no_balance_of_energy(tmp_path: Path) -> None:
@@ -124,19 +124,19 @@ CORNERS: list[tuple[Mapping, list[float]]] = [
 
 @pytest.mark.parametrize(("more", "met"), CORNERS, ids=["table", "history", "ramp"])
 def test_corners_are_met(more: Mapping, met: list[float], tmp_path: Path) -> None:
-    found = scene(tmp_path, quasi_static(3.5, **more))
-    (stage,) = found.stages
+    made = scene(tmp_path, quasi_static(3.5, **more))
+    (stage,) = made.stages
     assert stage.kind == "quasi-static"
-    assert corners(found, stage) == pytest.approx(met)
-    assert corner_count(found, stage) == pytest.approx(len(met), abs=3.0)
+    assert corners(made, stage) == pytest.approx(met)
+    assert corner_count(made, stage) == pytest.approx(len(met), abs=3.0)
 
 
 def test_a_period_has_four_and_twenty_corners(tmp_path: Path) -> None:
     motion = {"end": {"harmonic": {"amplitude": [0.01, 0.0, 0.0], "period": 2.0}}}
-    found = scene(tmp_path, quasi_static(3.0, motion=motion))
-    (stage,) = found.stages
+    made = scene(tmp_path, quasi_static(3.0, motion=motion))
+    (stage,) = made.stages
     assert stage.kind == "quasi-static"
-    assert corners(found, stage) == pytest.approx(np.arange(1, 37) / 12.0)
+    assert corners(made, stage) == pytest.approx(np.arange(1, 37) / 12.0)
 
 
 HELD_BACK: Mapping = {"at": "end", "force": [1.0, 0.0, 0.0]}
@@ -150,19 +150,19 @@ COUNTED: list[tuple[Mapping, float]] = [
 
 @pytest.mark.parametrize(("stage", "cycles"), COUNTED, ids=["table", "periods", "history", "static"])
 def test_cycles_are_counted(stage: Mapping, cycles: float, tmp_path: Path) -> None:
-    found = scene(tmp_path, stage)
-    assert cycle_count(found, found.stages[0]) == pytest.approx(cycles)
+    made = scene(tmp_path, stage)
+    assert cycle_count(made, made.stages[0]) == pytest.approx(cycles)
 
 
 @pytest.mark.parametrize(
-    ("kind", "duration", "reported"), [("kinematic-hardening", 100.0, True), ("iwan", 100.0, False)]
+    ("kind", "duration", "warned"), [("kinematic-hardening", 100.0, True), ("iwan", 100.0, False)]
 )
-def test_many_cycles_on_clay_that_forgets_are_reported(kind: str, duration: float, reported: bool) -> None:
+def test_many_cycles_on_clay_that_forgets_are_reported(kind: str, duration: float, warned: bool) -> None:
     swing = {"end": {"harmonic": {"amplitude": [0.0, 0.0, 0.01], "period": 10.0}}}
     given = touchdown(LAY, quasi_static(duration, motion=swing))
     given["soil"]["law"] = {"kind": kind, "su": 600.0, "E_over_su": 300.0, "nu": 0.49}
     warnings = lines_with(ground_warnings(built(given).riser), "lets go", "mean stress")
-    assert len(warnings) == reported
+    assert len(warnings) == warned
     assert lines_with(warnings, "half of it", "0.69% shear strain", "10 cycles", "(limit 10)", "take iwan") == warnings
 
 
@@ -227,11 +227,11 @@ def test_hysteretic_ground_answers_as_its_law_does(tmp_path: Path) -> None:
         seabed={"kind": "hysteretic", "law": law},
     )
     assembly = build(scene_from_mapping(given, tmp_path), MPI.COMM_SELF)
-    found: list[float] = []
+    forces: list[float] = []
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
         assert assembly.riser.seabed is not None
-        found.append(float(assembly.riser.seabed.force_on_riser(stepper.now)[2]))
+        forces.append(float(assembly.riser.seabed.force_on_riser(stepper.now)[2]))
 
     run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(watch), Timer.new())
     formula = RandolphQuiggin(**law).of_pipe(D)
@@ -240,7 +240,7 @@ def test_hysteretic_ground_answers_as_its_law_does(tmp_path: Path) -> None:
         answer = formula.update(np.array([depth]), history)
         history = answer.history
         expected.append(float(answer.force[0]))
-    assert found == pytest.approx(expected, rel=1e-6)
+    assert forces == pytest.approx(expected, rel=1e-6)
 
 
 def pressed(stage: Mapping, folder: Path) -> Mapping:
@@ -259,22 +259,22 @@ def pressed(stage: Mapping, folder: Path) -> Mapping:
         seabed={"kind": "hysteretic", "law": {"kind": "randolph-quiggin", "su": 5.0e3}},
     )
     run(scene_from_mapping(given, folder), folder / "out")
-    (reported,) = Run(folder / "out").summary["stages"]
-    return dict(reported)
+    (pushed,) = Run(folder / "out").summary["stages"]
+    return dict(pushed)
 
 
 def test_a_slow_dynamic_stage_has_no_impacts_and_makes_no_energy(tmp_path: Path) -> None:
     """The supports are paid for the mean force of each step and the ground takes that at its end: what the scheme books
     for it moves nothing.
     """
-    reported = pressed(dynamic(7.0, 1.0), tmp_path)
-    energy, impact = reported["energy"], reported["indicators"]["impact"]
+    stage = pressed(dynamic(7.0, 1.0), tmp_path)
+    energy, impact = stage["energy"], stage["indicators"]["impact"]
     assert energy["numerical"] < -0.05 * energy["turned_over"]
     assert energy["ahead"] == pytest.approx(-energy["numerical"], rel=1e-3)
     assert abs(energy["made"]) < 1e-3 * energy["turned_over"]
     assert energy["dissipated_by"]["seabed_time_scheme"] > 0.05 * energy["turned_over"]
     assert impact["lost"] < 1e-3 * energy["dissipated_by"]["seabed_time_scheme"]
-    assert not [each for each in reported["warnings"] if "impact lost" in each or "the time scheme" in each]
+    assert not [each for each in stage["warnings"] if "impact lost" in each or "the time scheme" in each]
 
 
 def test_a_stage_after_it_goes_on_from_there(tmp_path: Path) -> None:
@@ -312,16 +312,16 @@ def test_a_vessel_that_answers_waves_is_refused(tmp_path: Path) -> None:
     rows = "frequency [rad/s], direction [deg], heave [m/m], heave phase [deg]\n0.1, 0, 1, 0\n2, 0, 1, 0\n"
     (tmp_path / "rao.csv").write_text(rows, encoding="utf-8")
     vessel = {"rao": "rao.csv", "reference": [0.0, 0.0, 0.0]}
-    reported = refusal(tmp_path, quasi_static(1.0, motion={"end": {"vessel": vessel}}))
-    line_with(reported, "vessel answers waves", "quasi-static stage", "vessel_history")
+    message = refusal(tmp_path, quasi_static(1.0, motion={"end": {"vessel": vessel}}))
+    line_with(message, "vessel answers waves", "quasi-static stage", "vessel_history")
 
 
 def test_two_rows_are_enough(tmp_path: Path) -> None:
     rows = "".join(f"{line}\n" for line in SAW.splitlines()[:3])
     (stretch,) = stage_histories(scene(tmp_path, quasi_static(1.0, motion=PULLED), table=rows))
     assert stretch.end.effective_tension == pytest.approx(EA * 0.04 / L, rel=1e-6)
-    reported = refusal(tmp_path, dynamic(1.0, 0.1, motion=PULLED), table=rows.replace("[-]", "[s]"))
-    line_with(reported, "table of 2 rows", "at least 4", "quasi-static")
+    message = refusal(tmp_path, dynamic(1.0, 0.1, motion=PULLED), table=rows.replace("[-]", "[s]"))
+    line_with(message, "table of 2 rows", "at least 4", "quasi-static")
 
 
 def test_a_riser_with_two_free_ends_has_no_equilibrium(tmp_path: Path) -> None:

@@ -53,10 +53,10 @@ class Solver:
     def solution(self, entries: Array, load: Array) -> Array:
         rows = np.repeat(np.arange(ROWS), np.diff(self._pattern.indptr))
         self._csr = self._pattern.indptr, self._pattern.indices, entries[rows, self._pattern.indices]
-        given, found = (PETSc.Vec().createWithArray(a, comm=PETSc.COMM_SELF) for a in (load.copy(), np.zeros(ROWS)))
+        given, solution = (PETSc.Vec().createWithArray(a, comm=PETSc.COMM_SELF) for a in (load.copy(), np.zeros(ROWS)))
         self.solver.setUp(self._pc)
-        self.solver.apply(self._pc, given, found)
-        return np.array(found.array_r)
+        self.solver.apply(self._pc, given, solution)
+        return np.array(solution.array_r)
 
     @property
     def renewed(self) -> list[bool]:

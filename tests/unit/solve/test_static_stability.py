@@ -145,8 +145,8 @@ def test_round_off_neither_makes_nor_hides_an_unstable_mode(stiffness: float, ce
     chain = Chain(np.array([-1.0, -0.5]))
     system = System(MPI.COMM_SELF, Model([chain], [Springs(chain, 0.5, 1e3), Floor(chain, stiffness)]), Timer.new())
     state, weights = State.at_rest(1.0, chain.size), Static().weights(0.0)
-    found = [unstable_modes(PivotCounter(system), state, weights, 1.0, doubtful) for doubtful in (False, True)]
-    assert found == [certain, possible]
+    counts = [unstable_modes(PivotCounter(system), state, weights, 1.0, doubtful) for doubtful in (False, True)]
+    assert counts == [certain, possible]
     system.destroy()
 
 

@@ -80,27 +80,27 @@ def test_linear_response_is_the_whole_answer_of_a_linear_system() -> None:
 
 def test_a_moved_end_does_not_spoil_the_first_iteration() -> None:
     """Springs that stiffen: moved alone, the first mass stretches one of them by all of its way."""
-    found = {}
+    states = {}
     for start in (True, False):
         chain = MovedChain(np.arange(12.0), prescribed=True)
-        found[start] = solved(chain, [Springs(chain, 1.0, 100.0, cubic=1e6, weight=1e-3)], linear_start=start)
-    assert found[True].state.u == pytest.approx(found[False].state.u, rel=1e-9)
-    assert found[True].iterations < found[False].iterations - 3
+        states[start] = solved(chain, [Springs(chain, 1.0, 100.0, cubic=1e6, weight=1e-3)], linear_start=start)
+    assert states[True].state.u == pytest.approx(states[False].state.u, rel=1e-9)
+    assert states[True].iterations < states[False].iterations - 3
 
 
 def test_a_guess_that_flows_on_is_taken_and_one_far_off_is_not() -> None:
     """Springs that stiffen: from beside its end a step takes fewer iterations, and from far off none more."""
 
-    def taken(guess: Array | None) -> Solution:
+    def solution_from(guess: Array | None) -> Solution:
         chain = MovedChain(np.arange(12.0), prescribed=True)
         return solved(chain, [Springs(chain, 1.0, 100.0, cubic=1e4, weight=1.0)], guess, linear_start=True)
 
-    linear = taken(None)
-    near, far = (taken(linear.state.u + by * np.arange(12.0)) for by in (1e-6, 1.0))
+    linear = solution_from(None)
+    near, far = (solution_from(linear.state.u + by * np.arange(12.0)) for by in (1e-6, 1.0))
     assert near.iterations < linear.iterations
     assert far.iterations == linear.iterations
-    for found in (near, far):
-        assert found.state.u == pytest.approx(linear.state.u, rel=1e-7)
+    for solution in (near, far):
+        assert solution.state.u == pytest.approx(linear.state.u, rel=1e-7)
 
 
 def test_what_comes_to_touch_within_a_step_gets_its_place_at_once() -> None:
@@ -111,12 +111,12 @@ def test_what_comes_to_touch_within_a_step_gets_its_place_at_once() -> None:
         floor = kind(chain, 1e4)
         return floor, solved(chain, [Springs(chain, 0.01, 100.0, cubic=1e3, weight=1.0), floor])
 
-    (growing, found), (_, whole) = on(GrowingFloor), on(Floor)
+    (growing, landed), (_, whole) = on(GrowingFloor), on(Floor)
     assert isinstance(growing, GrowingFloor)
     assert growing.grown == [3]
-    assert found.state.u == pytest.approx(whole.state.u, rel=1e-9)
-    assert found.iterations == whole.iterations
-    assert found.norms == pytest.approx(whole.norms, rel=1e-6, abs=1e-9)
+    assert landed.state.u == pytest.approx(whole.state.u, rel=1e-9)
+    assert landed.iterations == whole.iterations
+    assert landed.norms == pytest.approx(whole.norms, rel=1e-6, abs=1e-9)
 
 
 def test_forces_in_play_are_the_largest_of_reactions_inertia_and_contact() -> None:

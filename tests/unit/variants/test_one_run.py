@@ -138,9 +138,9 @@ def test_a_run_ends_with_its_worker(tmp_path: Path) -> None:
         os.chdir(former)
     _, status = os.waitpid(begun[0], 0)
     assert os.WTERMSIG(status) == 9
-    with pytest.raises(SystemExit) as left:
+    with pytest.raises(SystemExit) as ended:
         _in_child(lambda: die_with(1))
-    assert left.value.code == 137
+    assert ended.value.code == 137
 
 
 def _in_child(do: Callable[[], None]) -> None:

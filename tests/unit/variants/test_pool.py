@@ -25,8 +25,8 @@ def test_no_run_is_wanted_once_one_has_found_the_disk_full(monkeypatch: pytest.M
         return Outcome(task["name"], "key", WriteError.exit_status, "full").as_dict()
 
     monkeypatch.setattr(pool, "run_variant", run)
-    found = outcomes([{"name": "first"}, {"name": "second"}], Workers(1), lambda: None)
-    assert next(found).name == "first"
+    results = outcomes([{"name": "first"}, {"name": "second"}], Workers(1), lambda: None)
+    assert next(results).name == "first"
     assert was_asked.wait(10.0)
-    found.close()
+    results.close()
     assert asked == [True, False]

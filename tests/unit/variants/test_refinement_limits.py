@@ -17,10 +17,10 @@ SIZES = (1.0, 0.6, 0.25, 0.2, 0.07)  # unequal ratios
 def test_a_pure_power_is_found_with_its_order(p: float, c: float) -> None:
     values = [7.0 + c * h**p for h in SIZES]
     assert observed_order(SIZES[:3], values[:3]) == pytest.approx(p, rel=1e-9)
-    found = limit(SIZES, values)
-    assert found.order == pytest.approx(p, rel=1e-6)
-    assert found.value == pytest.approx(7.0, rel=1e-9)
-    assert found.uncertainty == pytest.approx(0.3 * abs(values[-1] - 7.0), rel=1e-6)
+    result = limit(SIZES, values)
+    assert result.order == pytest.approx(p, rel=1e-6)
+    assert result.value == pytest.approx(7.0, rel=1e-9)
+    assert result.uncertainty == pytest.approx(0.3 * abs(values[-1] - 7.0), rel=1e-6)
 
 
 def test_order_of_points_does_not_matter() -> None:
@@ -32,24 +32,24 @@ def test_order_of_points_does_not_matter() -> None:
 @pytest.mark.parametrize("count", [3, 4, 5])
 def test_uncertainty_holds_the_error_where_higher_terms_disturb(second: float, count: int) -> None:
     sizes = [1.0, 0.5, 0.25, 0.125, 0.0625][:count]
-    found = limit(sizes, [1.0 + 0.4 * (h + second * h**3) for h in sizes])
+    result = limit(sizes, [1.0 + 0.4 * (h + second * h**3) for h in sizes])
     finest = 0.4 * (sizes[-1] + second * sizes[-1] ** 3)
-    assert abs(found.value - 1.0) <= (0.5 if count > 3 else 1.0 + 1e-9) * abs(finest)
-    assert abs(found.value - 1.0) <= found.uncertainty
+    assert abs(result.value - 1.0) <= (0.5 if count > 3 else 1.0 + 1e-9) * abs(finest)
+    assert abs(result.value - 1.0) <= result.uncertainty
 
 
 def test_values_that_turn_back_show_no_order() -> None:
-    found = limit((4.0, 2.0, 1.0), (1.3, 0.9, 1.0))
-    assert (found.value, found.order) == (1.0, None)
-    assert found.uncertainty == pytest.approx(0.4)
+    result = limit((4.0, 2.0, 1.0), (1.3, 0.9, 1.0))
+    assert (result.value, result.order) == (1.0, None)
+    assert result.uncertainty == pytest.approx(0.4)
 
 
 def test_values_that_drift_away_show_no_order() -> None:
     """Changes that grow, or fall too slowly to tell where they end."""
     for values in ((1.0, 1.1, 1.4), (1.0, 1.1, 1.19)):
-        found = limit((4.0, 2.0, 1.0), values)
-        assert (found.value, found.order) == (values[-1], None)
-        assert found.uncertainty == pytest.approx(values[-1] - 1.0)
+        result = limit((4.0, 2.0, 1.0), values)
+        assert (result.value, result.order) == (values[-1], None)
+        assert result.uncertainty == pytest.approx(values[-1] - 1.0)
 
 
 def test_noise_stays_within_the_uncertainty() -> None:
@@ -58,9 +58,9 @@ def test_noise_stays_within_the_uncertainty() -> None:
     for trial in range(400):
         sizes, noise = (1.0, 0.5, 0.25, 0.125), 1e-3 * random.standard_normal(4)
         error = 0.01 * (trial % 2)
-        found = limit(sizes, [1.0 + error * h**2 + e for h, e in zip(sizes, noise, strict=True)])
-        assert abs(found.value - 1.0) < 0.02
-        inside += abs(found.value - 1.0) <= found.uncertainty + 1e-3
+        result = limit(sizes, [1.0 + error * h**2 + e for h, e in zip(sizes, noise, strict=True)])
+        assert abs(result.value - 1.0) < 0.02
+        inside += abs(result.value - 1.0) <= result.uncertainty + 1e-3
     assert inside >= 0.95 * 400
 
 

@@ -25,16 +25,17 @@ ELEMENTS, TIME, SOIL, PENALTY = SETTINGS
 
 
 def scene(*stages: Mapping, without: tuple[str, ...] = (), **more: Any) -> Scene:
-    reported = touchdown(*stages)
-    return scene_from_mapping({key: value for key, value in reported.items() if key not in without} | deepcopy(more))
+    data = touchdown(*stages)
+    return scene_from_mapping({key: value for key, value in data.items() if key not in without} | deepcopy(more))
 
 
 def differing(a: Any, b: Any, path: str = "") -> set[str]:
     """Paths at which two plain values differ."""
     if isinstance(a, dict) and isinstance(b, dict) and a.keys() == b.keys():
-        return {found for key in a for found in differing(a[key], b[key], f"{path}.{key}".lstrip("."))}
+        return {key_path for key in a for key_path in differing(a[key], b[key], f"{path}.{key}".lstrip("."))}
     if isinstance(a, list | tuple) and isinstance(b, list | tuple) and len(a) == len(b):
-        return {found for n, (x, y) in enumerate(zip(a, b, strict=True)) for found in differing(x, y, f"{path}.{n}")}
+        pairs = enumerate(zip(a, b, strict=True))
+        return {key_path for n, (x, y) in pairs for key_path in differing(x, y, f"{path}.{n}")}
     return set() if a == b else {path}
 
 
@@ -87,12 +88,12 @@ def test_a_setting_turns_what_is_its_own_and_is_as_much_finer_as_asked(setting: 
 
 
 def test_given_and_graded_lengths_of_elements() -> None:
-    reported = touchdown(LAY)
-    reported["riser"]["segments"][0] = {"line_type": "flexible", "length": 12.0, "element_length": [0.2, 1.0]}
-    reported["riser"]["segments"][1] = {"line_type": "flexible", "length": 18.0, "element_length": 1.5}
-    turned = varied(scene_from_mapping(reported), ELEMENTS, 2.0)
+    data = touchdown(LAY)
+    data["riser"]["segments"][0] = {"line_type": "flexible", "length": 12.0, "element_length": [0.2, 1.0]}
+    data["riser"]["segments"][1] = {"line_type": "flexible", "length": 18.0, "element_length": 1.5}
+    turned = varied(scene_from_mapping(data), ELEMENTS, 2.0)
     assert [segment.element_length for segment in turned.line.segments] == [(0.1, 0.5), 0.75]
-    assert varied(scene_from_mapping(reported), ELEMENTS, 1e-3).line.element_count == 2
+    assert varied(scene_from_mapping(data), ELEMENTS, 1e-3).line.element_count == 2
     lengths = turned.line.segments[0].element_lengths
     assert lengths[-1] / lengths[0] == pytest.approx(5.0)
 
@@ -114,19 +115,19 @@ def test_a_step_is_no_longer_than_its_stage() -> None:
 
 
 def test_the_strip_of_fine_cells_keeps_its_width() -> None:
-    reported = touchdown(LAY)
-    reported["soil"]["mesh"] |= {"size_at_riser": {"along": 0.6, "across": 0.1}}
-    turned = varied(scene_from_mapping(reported), SOIL, 2.0).soil
+    data = touchdown(LAY)
+    data["soil"]["mesh"] |= {"size_at_riser": {"along": 0.6, "across": 0.1}}
+    turned = varied(scene_from_mapping(data), SOIL, 2.0).soil
     assert turned is not None
     assert isinstance(turned.mesh, GeneratedMesh)
     assert turned.mesh.size_at_riser == CellSizes(along=0.3, across=0.05, strip=0.8)
 
 
 def test_automatic_sizes_and_penalties_are_turned_as_the_numbers_that_they_stand_for() -> None:
-    reported = touchdown(LAY)
-    reported["soil"] |= {"block": "auto", "mesh": "auto"}
-    reported["contact"] = {"method": "surface"}
-    given = scene_from_mapping(reported)
+    data = touchdown(LAY)
+    data["soil"] |= {"block": "auto", "mesh": "auto"}
+    data["contact"] = {"method": "surface"}
+    given = scene_from_mapping(data)
     assert changed(sized(given), resolved(given)) == {"contact.stiffness"}
     turned = varied(given, SOIL, 1.25)
     assert SOIL.fineness(turned) / SOIL.fineness(given) == pytest.approx(1.25)

@@ -34,9 +34,9 @@ def test_time_stages_are_two_steps_long() -> None:
 def test_scenes_are_run_by_their_names_and_leave_no_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     scene = read_scene(FIRST)
-    found = list(compile_kernels({"a/b.yaml": scene, "c": scene}, jobs=2))
-    assert sorted(outcome.name for outcome in found) == ["a/b.yaml", "c"]
-    assert all(outcome.done for outcome in found)
+    results = list(compile_kernels({"a/b.yaml": scene, "c": scene}, jobs=2))
+    assert sorted(outcome.name for outcome in results) == ["a/b.yaml", "c"]
+    assert all(outcome.done for outcome in results)
     assert not list(tmp_path.iterdir())
 
 
