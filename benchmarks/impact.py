@@ -65,8 +65,8 @@ Method = tuple[str, str]
 
 @dataclass(frozen=True)
 class Outcome:
-    """Of one run: largest gain and what is left at the end, as shares of what the pipe falls with; steps, and those
-    that were cut; finished: whether it got to the end.
+    """Energies of one run: largest gain and what is left at the end, as shares of what the pipe falls with; steps, and
+    those that were cut; finished: whether it got to the end.
     """
 
     gain: float

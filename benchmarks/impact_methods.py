@@ -56,7 +56,7 @@ class Averaged:
 
 
 class DiscreteData(NamedTuple):
-    """As of `DiscreteGradient`."""
+    """Kernel data of `DiscreteGradient`."""
 
     penalty: PenaltyData
 

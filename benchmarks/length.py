@@ -45,7 +45,7 @@ def rows(dimension: int) -> Iterator[list[str]]:
 
 
 def measure(dimension: int, elements: int) -> tuple[float, float, float, float, float]:
-    """Of a step: processor seconds, iterations; of the process: most memory in bytes; of a step again: bytes that it
+    """Cost of a step: processor seconds, iterations, the process's largest memory in bytes, bytes that the step
     allocates at most at a time, and that it leaves behind.
     """
     sizes = f"riser.segments.0.length={LENGTH}", f"riser.end.position=[{END}, 0.0, {END}]"

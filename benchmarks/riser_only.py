@@ -53,7 +53,7 @@ def report(page: bool = False) -> None:
 
 
 def row(case: str, us: Mapping[str, float]) -> list[str]:
-    """Of the table, from what `measure` has found."""
+    """A row of the table, from what `measure` returns."""
     step, recorded, snes = (us[name] / 1e3 for name in ("step", "recorded", "snes"))
     real = [f"{1e3 * us['time step'] / each:.0f}" for each in (step, recorded)]
     return [

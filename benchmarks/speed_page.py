@@ -21,7 +21,7 @@ def tell(name: str, head: Sequence[str], rows: Iterable[Sequence[str]], page: bo
 
 
 def machine() -> str:
-    """Of the run, with its day."""
+    """The machine of the run, with the day."""
     return f"{platform.machine()}, one core, Python {platform.python_version()}, {date.today():%Y-%m-%d}"
 
 

@@ -18,8 +18,8 @@ SHORT = 1.0  # s of a run before, in which kernels are compiled, or read
 
 
 class Cost(NamedTuple):
-    """Of a storm: its steps and Newton iterations a step; processor seconds of all of it; shares of the time by the
-    clock that go to the line solver, and to results.
+    """Cost of a storm: its steps and Newton iterations a step; processor seconds of all of it; shares of the time by
+    the clock that go to the line solver, and to results.
     """
 
     steps: int

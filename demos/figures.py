@@ -63,7 +63,7 @@ def clay_scene(folder: Path) -> Path:
 
 
 def of_first(run: Run, weight: float) -> Texts:
-    """Of demos/first_scene.yaml: what its stages give, and the check of the tension by hand, T = H + w h.
+    """Figures of demos/first_scene.yaml: what its stages give, and the check of the tension by hand, T = H + w h.
 
     weight: in water [N/m].
     """
@@ -106,13 +106,13 @@ def ends(extremes: Mapping[str, Any], *path: str) -> tuple[float, float]:
 
 
 def of_clay(run: Run) -> Texts:
-    """Of the first scene with clay instead of springs."""
+    """Figures of the first scene with clay instead of springs."""
     arc = run.summary["stages"][0]["final"]["touchdown_arc"]
     return {"clay cells": f"{len(run.soil_frame().cells):,}", "clay touchdown": f"{arc:.2f}"}
 
 
 def of_steel(run: Run) -> Texts:
-    """Of demos/steel_catenary.yaml, with error bars."""
+    """Figures of demos/steel_catenary.yaml, with error bars."""
     hung, (static, heave) = run.summary["hang_off"], run.summary["stages"]
     bars = {each["name"]: each["bar"] for each in run.summary["error_bars"]["quantities"] if each["stage"] == "heave"}
     final, extremes = static["final"], heave["extremes"]

@@ -308,7 +308,7 @@ CAPACITY = "capacity at 0.2 D"
 
 
 def of_quality() -> dict[str, str]:
-    """Of error bars, accuracies asked and stress cases."""
+    """Figures of error bars, accuracies asked and stress cases."""
     scenes, judged = row("docs/error_bars.md", "error bars out of sample", "scenes, key results judged")[1].split(", ")
     inside = row("docs/error_bars.md", "error bars out of sample", "true error inside its bar")[1].removesuffix("%")
     asked = "\n".join(block_of("docs/asked_accuracy.md", "asked accuracy"))

@@ -25,7 +25,7 @@ SOIL = {name: scene for name, scene in SCENES.items() if "soil" in scene}
 
 
 class Outcome(Enum):
-    """Of a scene that asks for an accuracy."""
+    """How a scene that asks for an accuracy ended."""
 
     REACHED = "reached"
     REPORTED = "told that it is not reached"
@@ -114,7 +114,7 @@ def median_error(scenes: Iterable[AskedScene]) -> float:
 
 
 def costs(scenes: Iterable[AskedScene]) -> list[HandCost]:
-    """Of those that reach the accuracy, where a setting by hand does, too."""
+    """Costs of the scenes that reach the accuracy, where a setting by hand does, too."""
     return [each.cost for each in scenes if each.outcome is Outcome.REACHED and each.cost is not None]
 
 

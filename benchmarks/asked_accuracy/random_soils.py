@@ -36,7 +36,7 @@ def read() -> dict[str, Reached]:
 
 
 def figures() -> str:
-    """Of the scenes so far, for the page."""
+    """Figures of the scenes so far, for the page."""
     kept = read()
     outcomes = [each["outcome"] for each in kept.values()]
     claimed = [each for each in kept.values() if each["outcome"] in (Outcome.REACHED.value, Outcome.MISSED.value)]
@@ -86,7 +86,7 @@ def reached(name: str) -> Reached:
 
 
 def in_time(name: str) -> Reached:
-    """The same from a process that is ended after a while."""
+    """Like `reached`, in a process that is ended after a while."""
     call = [sys.executable, "-m", "benchmarks.asked_accuracy.random_soils", "--one", name]
     done = subprocess.run(call, capture_output=True, text=True, check=False, preexec_fn=_limit_processor)
     if done.returncode == -signal.SIGXCPU:

@@ -52,7 +52,7 @@ def accuracy_of(scene: Mapping[str, Any]) -> float:
 
 
 def true_errors(folder: Path, reference: Reference, accuracy: float = ACCURACY) -> TrueErrors:
-    """Of the run in a folder; inf for a quantity that it lacks."""
+    """True errors of the run in a folder; inf for a quantity that it lacks."""
     key_results = key_results_in(folder)
     errors, left_out = dict[str, float](), 0
     for key, (true, uncertainty) in reference.items():
@@ -64,7 +64,7 @@ def true_errors(folder: Path, reference: Reference, accuracy: float = ACCURACY) 
 
 
 def run_errors(scene: Scene, folder: Path, reference: Reference) -> tuple[TrueErrors | None, float]:
-    """Of the scene run as users do, and its processor time [s]; None where it fails."""
+    """True errors of the scene run as users do, and its processor time [s]; None where it fails."""
     try:
         seconds = seconds_of(lambda: run(scene, folder, force=True))
     except (SolveError, ArithmeticError):

@@ -53,7 +53,7 @@ class Found:
 
     @property
     def difference(self) -> float | None:
-        """Of the tension from the catenary's, over it."""
+        """Relative difference of the tension from the catenary's."""
         if self.tension is None or self.reference is None or self.reference < NO_TENSION:
             return None
         return self.tension / self.reference - 1
@@ -113,7 +113,7 @@ def _other_lines(place: Path) -> list[str]:
 
 
 def _others(deck: Path, name: tuple[str, str], work: Path) -> Iterator[Found]:
-    """Of the lines that neither the first riser has nor one that came before."""
+    """Decks of the lines that neither the first riser has nor one that came before."""
     remaining = _other_lines(work / "first")
     for _ in range(MOST_OTHERS):
         if not remaining:

@@ -35,7 +35,9 @@ def judged(scenes: Mapping[str, SceneMapping], known: Known) -> list[JudgedScene
 
 
 def write_references(asked: Iterable[str], missing: bool = False) -> None:
-    """Of these, else of all or of those that are not there; those on soil have a file of their own."""
+    """Write references of the named scenes, else of all, or of those that have none; those on soil have a file of their
+    own.
+    """
     names = list(asked)
     for scenes, file in ((ALL, references.FILE), (SOILS, references.ON_SOIL)):
         there = references.read(file) if missing and file.exists() else {}

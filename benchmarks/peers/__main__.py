@@ -39,7 +39,7 @@ class Compared:
 
     @property
     def voices(self) -> list[dict[str, float]]:
-        """Of the programs that have computed the finest run: explicit ones are not that patient, others fail."""
+        """Programs that have computed the finest run: explicit ones are not that patient, others fail."""
         return [values for name, values in self.finest.items() if FINEST[self.case.name] in self.found[name]]
 
     @property

@@ -66,7 +66,7 @@ class Water:
         return self._matrix(self._mass * _outer(normal, normal))
 
     def jacobian(self, mbs: Any, t: float, item: int, q: object, v: object, by_q: float, by_v: float) -> object:
-        """Of the forces to the left; what the line's turning changes is left out."""
+        """Derivative of the forces; what the line's turning changes is left out."""
         _, speed, normal = self._across(q, v)
         matrix = by_v * 2.0 * self._drag * speed * _outer(normal, normal)
         if self._case.floor is not None:
@@ -222,7 +222,7 @@ def _read(case: Case, reference: np.ndarray, solution: dict[str, Any], seconds: 
 
 
 def _curvature(coordinates: np.ndarray, length: float, xi: float) -> np.ndarray:
-    """Of the cubic between neighbouring nodes (nt, nn - 1) at a share of its length."""
+    """Curvature of the cubic between neighbouring nodes (nt, nn - 1) at a share of its length."""
     r0, r1 = coordinates[:, :-1, :2], coordinates[:, 1:, :2]
     s0, s1 = length * coordinates[:, :-1, 2:], length * coordinates[:, 1:, 2:]
     first = 6.0 * (xi - xi**2) * (r1 - r0) + (1.0 - 4.0 * xi + 3.0 * xi**2) * s0 + (3.0 * xi**2 - 2.0 * xi) * s1

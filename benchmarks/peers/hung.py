@@ -27,7 +27,7 @@ PEERS = (10, 0.0005), (20, 0.00025)
 
 
 def scene_of(name: str, parts: int, time_step: float, folder: Path) -> dict[str, Any]:
-    """As it is imported, and shaken."""
+    """The imported scene, shaken."""
     case, deck = CASES[name], folder / "deck.txt"
     deck.write_text(case.deck(parts, time_step), encoding="utf-8")
     scene = whole_scene_of(read_deck(deck)).data

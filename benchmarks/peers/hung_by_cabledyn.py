@@ -51,7 +51,9 @@ LineID LineType Length NumSegs
 
 
 def _deck(case: Hung, parts: int) -> str:
-    """Of a case without free points; drag and added mass of the body do nothing at rest, and are alike in all axes."""
+    """Deck of a case without free points; drag and added mass of the body do nothing at rest, and are alike in all
+    axes.
+    """
     types = (" ".join([*row[:4], "0.0", row[5], row[6], row[8], row[7], row[9]]) for row in _rows(case.types))
     lines = [row[:6] for row in _rows(case.lines.format(parts, 2 * parts))]
     return DECK.format(

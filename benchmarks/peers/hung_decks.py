@@ -81,7 +81,7 @@ class Hung(NamedTuple):
         return head + REST.format(points=self.points, lines=lines, depth=self.depth, time_step=time_step)
 
     def place(self, t: float) -> list[float]:
-        """Of the moved end [m], t seconds after it began; the ramp is riser_soil's."""
+        """Place of the moved end [m], t seconds after it began; the ramp is riser_soil's."""
         x = min(t / self.period, 1.0)
         swing = x**3 * (10.0 - 15.0 * x + 6.0 * x * x) * math.sin(2.0 * math.pi * t / self.period)
         return [x + a * swing for x, a in zip(self.moved, self.amplitude, strict=True)]

@@ -33,7 +33,7 @@ class Program:
 
     @property
     def stem(self) -> str:
-        """Of its files."""
+        """Beginning of its files' names."""
         return "_".join([self.module, *self.options.values()]).replace(" ", "_")
 
     def runs(self, case: str) -> Iterator[tuple[int, float]]:

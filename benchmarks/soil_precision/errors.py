@@ -90,7 +90,7 @@ def series(rows: Sequence[Row], scene: str, figure: str, norm: str) -> dict[str,
 
 
 def cheapest(rows: Sequence[Row], error: float) -> Row | None:
-    """Of a figure's rows, the cheapest with at most that error which all finer ones of its method keep."""
+    """The cheapest of a figure's rows that has at most that error, as have all finer ones of its method."""
     kept = [row for row in rows if all(r.error <= error for r in rows if r.method == row.method and r.n >= row.n)]
     return min(kept, key=lambda row: row.seconds, default=None)
 

@@ -70,7 +70,7 @@ def laid(n: int, method: Mapping, law: Mapping = CLAY) -> Mapping:
 
 
 def elastic(n: int, method: Mapping) -> Mapping:
-    """The same riser on elastic soil."""
+    """A pressed riser on elastic soil."""
     return laid(n, method, ELASTIC)
 
 

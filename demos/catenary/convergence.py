@@ -91,7 +91,9 @@ def _shown(values: dict[str, float], names: Sequence[str]) -> list[str]:
 
 
 def _order(a: float, b: float, c: float) -> str:
-    """Of three values from halved elements; no order can be seen where round-off is all that changes."""
+    """Order of convergence from three values on halved elements; no order can be seen where round-off is all that
+    changes.
+    """
     return f"{np.log2(abs((b - a) / (c - b))):.1f}" if abs(c - b) > 1e-9 * abs(c) else "–"
 
 

@@ -89,6 +89,6 @@ def path_differences(folder: Path) -> dict[str, float]:
 
 
 def paths_page(folder: Path) -> str:
-    """The same as Markdown."""
+    """The differences of the paths as Markdown."""
     rows = [[name.replace("_", " "), f"{value:.0e}"] for name, value in path_differences(folder).items()]
     return table(["along the riser", "largest difference / largest value"], rows)

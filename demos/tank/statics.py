@@ -91,7 +91,7 @@ def mesh_rows(
 
 
 def mesh_errors(folder: Path, method: str, elements: Sequence[int], stiffness: float) -> Array:
-    """Of a Rest's quantities (elements, 4)."""
+    """Errors of a Rest's quantities by number of elements (elements, 4)."""
     exact = reference()[1][stiffness]
     return np.array([at_rest(folder, n, stiffness, method).errors(exact) for n in elements])
 

@@ -91,7 +91,7 @@ def jonswap(w: Array) -> Array:
 
 
 def page(checks: list[Check]) -> str:
-    """As Markdown."""
+    """The checks as Markdown."""
     rows = []
     for name, unit, value, expected in checks:
         difference = f"{100.0 * (value / expected - 1.0):.2f} %"

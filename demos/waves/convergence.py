@@ -54,7 +54,7 @@ def extremes(run: Run) -> dict[str, float]:
 
 
 def as_table(results: Mapping[tuple[float, float], tuple[int, float, dict[str, float]]]) -> str:
-    """As Markdown, with the largest error of tensions, of moments, and of the touchdown arc."""
+    """The results as Markdown, with the largest error of tensions, of moments, and of the touchdown arc."""
     best = results[CASES[-1]][2]
     rows = []
     for (_, time_step), (elements, seconds, values) in results.items():

@@ -47,7 +47,7 @@ def copied(demo: Path, tmp_path: Path) -> Path:
 
 @pytest.fixture
 def hung(place: Path) -> Path:
-    """The same with folders in place of the runs at rest, which the storms name."""
+    """The scenes of the storms with folders in place of the runs at rest, which the storms name."""
     for soil in ("soft", "stiff"):
         (place / "results/at_rest/cases" / soil).mkdir(parents=True)
     return place

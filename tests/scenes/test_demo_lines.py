@@ -19,7 +19,7 @@ SHORT = ("stages.1.duration=0.5",)
 
 
 def page_figures() -> dict[tuple[str, int], tuple[float, float]]:
-    """Of the page, by line and end: a run's tension and the catenaries' [kN]."""
+    """The page's tensions by line and end: a run's tension and the catenaries' [kN]."""
     rows = [line.split("|") for line in block((DEMO / "README.md").read_text(), "tensions").splitlines() if "`" in line]
     names = [row[1].strip().split("`, ") for row in rows]
     values = [(float(row[2]), float(row[3])) for row in rows]

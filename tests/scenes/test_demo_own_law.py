@@ -77,7 +77,7 @@ def test_shear_at_constant_volume_ends_at_the_critical_state(OCR: float, water: 
 
 
 def test_the_water_bears_what_is_squeezed_where_nothing_drains() -> None:
-    """Of a mean total stress that grows by water and skeleton in parallel."""
+    """The mean total stress grows by water and skeleton in parallel."""
     law, lost = clay(isotropic(), OCR=3.0, water=2.0e7), 1e-4
     after = followed(law, -lost / 3.0 * mandel.UNIT, 1)
     np.testing.assert_allclose(of(law, after, "pore_pressure"), 2.0e7 * lost, rtol=1e-9)

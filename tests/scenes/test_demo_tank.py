@@ -94,7 +94,7 @@ def test_page_shows_the_seabeds_as_computed(tmp_path: Path) -> None:
 
 @pytest.mark.verify
 def test_order_in_elements_and_step(tmp_path: Path) -> None:
-    """Of the positions; vibrations along the hose hide that of the tensions."""
+    """Order of the positions; vibrations along the hose hide that of the tensions."""
     by_elements = [swing(tmp_path / str(n), n, STEP, STIFFNESS) for n in (100, 200, 400)]
     by_step = [swing(tmp_path / str(dt), COUNT, dt, STIFFNESS) for dt in (0.1, 0.05, 0.025)]
     assert orders(*by_elements)["position"] > 2.5

@@ -99,7 +99,7 @@ def test_first_scene_is_the_file() -> None:
 
 @pytest.fixture(scope="module")
 def figures(done: object, newcomer: Path) -> Texts:
-    """Of quick scenes, from the runs that the pages' commands made, and a few more."""
+    """Figures of quick scenes, from the runs that the pages' commands made, and a few more."""
     return quick_figures(newcomer)
 
 

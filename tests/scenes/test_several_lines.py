@@ -136,7 +136,7 @@ def test_a_moment_heels_a_buoy_until_it_is_righted(tmp_path: Path) -> None:
 
 
 def test_steps_hit_the_bends_of_a_load_on_a_body() -> None:
-    """As they hit those of a load on a line."""
+    """Steps end at the corners of a load's history, on a body as on a line."""
     load = {"force": [1.0, 0.0, 0.0], "history": [[0.0, 0.0], [0.37, 1.0], [0.81, 0.0]]}
     scene = scene_from_mapping(mooring(shaken() | {"bodies": {"buoy": {"loads": [load]}}}))
     for view in by_line(scene).values():
@@ -177,7 +177,7 @@ def one_riser() -> dict[str, Any]:
 
 
 def in_two(scene: dict[str, Any]) -> dict[str, Any]:
-    """The same as two lines that are clamped to each other, the first of them guessed to end somewhere."""
+    """A line as two lines that are clamped to each other, the first of them guessed to end somewhere."""
     cut = deepcopy(scene)
     whole = cut.pop("riser")
     del cut["dimension"]
@@ -213,7 +213,7 @@ def test_lines_that_keep_to_a_plane_are_those_of_space(along: int, tmp_path: Pat
 
 
 def turned(scene: dict[str, Any]) -> dict[str, Any]:
-    """The same along y."""
+    """The scene, turned to lie along y."""
     return {key: turned(each) if isinstance(each, dict) else _turned(each) for key, each in scene.items()}
 
 
@@ -239,7 +239,7 @@ def test_two_lines_clamped_together_are_one(tmp_path: Path) -> None:
 
 
 def test_the_energy_of_bodies_balances(tmp_path: Path) -> None:
-    """Of a rigid body with all that it may have, shaken by its mooring; in waves and a current, too."""
+    """A rigid body with all that it may have is shaken by its mooring; in waves and a current, too."""
     calm = ran(mooring(shaken(), body=RIGID), tmp_path / "calm")
     waves = {"airy": {"height": 2.0, "period": 6.0}, "ramp": 1.0}
     water: dict[str, Any] = {"density": RHO, "surface_level": 0.0, "depth": DEPTH, "waves": waves}

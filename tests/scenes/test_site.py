@@ -64,7 +64,7 @@ def test_equations_are_typeset(site: Path) -> None:
 
 
 def test_primes_are_no_exponents(site: Path) -> None:
-    """As such they are specks, whatever the font."""
+    """Primes as exponents are specks, whatever the font."""
     shown = text(site / "docs/theory/index.html")
     assert len(re.findall(r"<mo [^>]*>&#x0(?:2032|2033|2057);</mo>|<mo [^>]*>[′″⁗]</mo>", shown)) > 5
     assert re.findall(r"<msup><mi>\w+</mi><m[io]>(?:&#x0(?:2032|2033|2057);|[′″⁗])", shown) == []

@@ -11,7 +11,7 @@ from riser_soil.riser.vectors import Vec
 
 
 class BeyondData(NamedTuple):
-    """As of `beyond`."""
+    """Kernel data of `beyond`."""
 
     x: float
     until: float

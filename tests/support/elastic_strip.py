@@ -53,7 +53,9 @@ class StripOnSlice:
         self.soil.commit(State(1.0, self.u.ravel(), rest, rest))
 
     def settlement_error(self) -> float:
-        """Of the settlement from the middle at the surface up to 1.5 B away, largest, over that of the last of them."""
+        """Error of the settlement from the middle at the surface up to 1.5 B away, largest, over that of the last of
+        them.
+        """
         top = (self.points[:, 2] > -1e-9) & (self.points[:, 0] < 1.5 + 1e-9)
         x, settled = self.points[top, 0], self.u[top, 2]
         settlement = settled - np.mean(settled[x < 1e-9])
@@ -61,7 +63,9 @@ class StripOnSlice:
         return float(np.abs(settlement - exact).max() / exact.max())
 
     def stress_error(self) -> float:
-        """Of the mean stress and the von Mises stress of cells below the strip's middle half, 1.5 B deep; over 1 Pa."""
+        """Error of the mean stress and the von Mises stress of cells below the strip's middle half, 1.5 B deep; over 1
+        Pa.
+        """
         mesh, fields = self.soil.output_mesh(), self.soil.output_fields()
         middle = mesh.points[mesh.cells].mean(axis=1)
         near = (middle[:, 0] < 0.25) & (middle[:, 2] > -1.5)

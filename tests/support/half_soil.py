@@ -37,7 +37,7 @@ def pressed(symmetry: str, width: float = 1.6, **more: Any) -> Mapping:
 
 
 def along_y(scene: Mapping) -> Mapping:
-    """The same scene, turned so that its riser runs along y."""
+    """The scene, turned so that its riser runs along y."""
     for end in ("start", "end"):
         x, y, z = scene["riser"][end]["position"]
         scene["riser"][end]["position"] = [y, x, z]

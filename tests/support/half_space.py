@@ -33,7 +33,7 @@ def boussinesq(to: Array) -> Array:
 
 
 def cerruti(to: Array) -> Array:
-    """The same from a unit force along x; Johnson, section 3.6."""
+    """Displacements from a unit force along x on the surface; Johnson, section 3.6."""
     x, y, z, R = *(to * [1.0, 1.0, -1.0]).T, np.linalg.norm(to, axis=1)
     a = 1.0 - 2.0 * NU
     along = 1.0 + x**2 / R**2 + a * (R / (R + z) - x**2 / (R + z) ** 2)
@@ -56,7 +56,9 @@ class LoadedBlock:
         self.u = respond(soil, self.load)
 
     def share(self, unit: Any) -> float:
-        """Of the half space's displacement at all points 1.5 to 2 m from the patch's middle, what the block shows."""
+        """Share of the half space's displacement at all points 1.5 to 2 m from the patch's middle, what the block
+        shows.
+        """
         distance = np.linalg.norm(self.points, axis=1)
         near = (distance > 1.5) & (distance < 2.0)
         exact, forces = np.zeros((np.count_nonzero(near), 3)), np.linalg.norm(self.load, axis=1)

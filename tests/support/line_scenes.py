@@ -127,7 +127,7 @@ def lazy_s_by_catenaries() -> tuple[Array, dict[str, tuple[float, float]]]:
     """x, z [m] and angle [rad] of the arch, and tensions [N] of each line at its start and end, by a root finder."""
 
     def hung(at: Array) -> dict[str, tuple[Array, Array, Array]]:
-        """Of each line: arm in the plane, force on the arch and at the other end."""
+        """Each line's arm in the plane, force on the arch and at the other end."""
         c, s = math.cos(at[2]), math.sin(at[2])
         turn, lines = np.array([[c, -s], [s, c]]), {}
         for name, (kind, length, _, place, arm, ends_up) in LAZY_S.items():

@@ -231,7 +231,9 @@ def require_contact_results(stage: TimedStage) -> None:
 
 
 def require_iterations(compiled: TimedStage, snes: TimedStage) -> None:
-    """As many as SNES takes; some more with contact, whose share of the tangent may then be all that is found anew."""
+    """Newton takes as many iterations as SNES; some more with contact, whose share of the tangent may then be all that
+    is found anew.
+    """
     if compiled.system.smooth:
         assert compiled.iterations == snes.iterations
     else:

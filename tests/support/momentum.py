@@ -28,7 +28,7 @@ def momentum(assembly: Assembly, stepper: TimeStepper) -> tuple[Array, Array]:
 
 
 def of_body(body: MovingBody, M: Array, v: Array) -> tuple[Array, Array]:
-    """Of a body with the mass matrix M (6, 6) and rates v (6,)."""
+    """Momentum of a body with the mass matrix M (6, 6) and rates v (6,)."""
     R = body.frames.R[0]
     linear, angular = (M @ np.concatenate([R.T @ v[:3], v[3:]])).reshape(2, 3) @ R.T
     return linear, angular + np.cross(body.x[0], linear)

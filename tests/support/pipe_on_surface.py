@@ -51,7 +51,7 @@ class PipeOnSurface:
         return self.line.to_global(trial.x), trial.turn.tangent @ self.line.basis.T
 
     def residual(self, u: Array, part: Part | None = None) -> Array:
-        """Of contact, or of another part on it."""
+        """Residual of contact, or of another part on it."""
         forces = Forces.zeros(self.size)
         (part or self.contact).residual(self.state(u), forces)
         assert not forces.inertia.any()

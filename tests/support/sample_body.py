@@ -11,7 +11,7 @@ RHO = 1025.0
 
 
 def properties(turns: bool = True) -> BodyProperties:
-    """Of a rigid body with all that it may have, or of a point."""
+    """Properties of a rigid body with all that it may have, or of a point."""
     none, ca = np.zeros(3), np.array([0.4, 0.9, 1.6])
     if not turns:
         return BodyProperties(300.0, none, none, 0.5, none, np.full(3, 0.8), none, np.full(3, 0.5 * RHO * 0.5), none)

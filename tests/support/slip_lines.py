@@ -63,7 +63,7 @@ def smooth_strips(lines: int, reach: float) -> tuple[Array, Array]:
 
 
 def rough_strips(lines: int, reach: float) -> tuple[Array, Array]:
-    """The same of rough strips: each line of family b that comes to ψ = π/2 bounds the wedge of one."""
+    """Bearing of rough strips: each line of family b that comes to ψ = π/2 bounds the wedge of one."""
     points = field(lines, reach, ROUGH)
     beside = _cumulated(np.array([line[-1] for line in points]))  # what the strip bears where the soil slides along it
     strips = [(0.0, 0.0)]

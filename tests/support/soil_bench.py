@@ -70,7 +70,7 @@ class Bench:
         return self._force(self._state(u))
 
     def at_rest(self) -> Array:
-        """The same as accepted."""
+        """The state of rest as an accepted one."""
         return self._force(State.at_rest(1.0, self.soil.field.size))
 
     def _force(self, state: State) -> Array:

@@ -90,7 +90,7 @@ class Energies(StatelessObserver):
 
     @property
     def gain(self) -> Array:
-        """Of stored energy since the start beyond the work put in."""
+        """Gain of stored energy since the start beyond the work put in."""
         stored, work = np.array(self._rows)[:, :2].T
         return np.asarray(stored - self._begun - np.cumsum(work))
 

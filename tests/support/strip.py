@@ -51,7 +51,8 @@ def press_strip(
 def press_graded_strip(
     size: float, growth: float, law: SoilLaw = CLAY, rough: bool = True, fine: float = 0.0, depth: float = 0.15
 ) -> Strip:
-    """The same, `depth` [m] down, on tetrahedra of a `size` [m] at the strip's edge and `fine` m inwards below it.
+    """Press a strip into clay whose strength grows, `depth` [m] down, on tetrahedra of a `size` [m] at the strip's edge
+    and `fine` m inwards below it.
 
     Away from there they grow by `growth` metres per metre, up to 16 times that size.
     """

@@ -14,7 +14,7 @@ from riser_soil.sea.through_kernels import write_derivatives, write_resistance
 
 
 def resistance(law: Any, v: Array, tau: Array) -> Array:
-    """Of a law (d,) where a step ends, at the velocity v (d,) of a pipe along tau (d,)."""
+    """Resistance of a law (d,) where a step ends, at the velocity v (d,) of a pipe along tau (d,)."""
     at = FlowWorkspace(*np.empty((7, v.size)))._replace(through=v, tau=tau)
     write_resistance.kernels[type(law)](law, END, 0, 0, at, fixed(v.size))
     return at.force

@@ -203,7 +203,7 @@ class Winkler:
         return np.vstack([up, h.w * (1.0 - self._force(y[1]))])
 
     def _derivatives(self, s: Array, y: Array, p: Array) -> tuple[Array, Array]:
-        """Of the rates by y and by the unknown."""
+        """Derivatives of the rates by y and by the unknown."""
         h = self.hose
         H, V, scale = p[0] * h.w * h.length, y[4], h.w * h.length
         c, n = np.cos(y[2]), np.sin(y[2])

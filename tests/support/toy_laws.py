@@ -140,7 +140,7 @@ class PlasticBed(CompiledLaw):
 
 
 class PlasticData(NamedTuple):
-    """As of `PlasticSpring`."""
+    """Kernel data of `PlasticSpring`."""
 
     k: float
     limit: float

@@ -284,7 +284,7 @@ def test_an_interruption_that_a_library_takes_for_its_own_is_reported(number: si
 
 
 def test_a_signal_in_what_c_calls_back_is_reported_at_the_next_step(capsys: pytest.CaptureFixture[str]) -> None:
-    """As LLVM calls numba: an exception ends nothing there."""
+    """C calls back as LLVM calls numba: an exception ends nothing there."""
     called_back = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGTERM))
     reached = []
 

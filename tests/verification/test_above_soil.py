@@ -28,7 +28,7 @@ def run_on_two_ranks(name: str, linear: str) -> Seen:
 
 
 def require_same_states(one: Seen, other: Seen) -> None:
-    """Of some 0.1 to 10 m; solved to 1e-7 of the forces, or to 1e-9."""
+    """States of some 0.1 to 10 m; solved to 1e-7 of the forces, or to 1e-9."""
     assert np.abs(np.array(one.places) - other.places).max() < 1e-9
     assert np.abs(np.array(one.settled) - other.settled).max() < 1e-9
 

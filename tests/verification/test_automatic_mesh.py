@@ -138,7 +138,7 @@ def test_halving_all_cells_changes_little(
 
 @pytest.mark.verify
 def test_a_pipe_that_has_sunk_in_meets_what_is_published_on_automatic_cells(tell: Tell) -> None:
-    """Of Merifield, White & Randolph, smooth, at D/4; half of all cells change it a little."""
+    """Resistance by Merifield, White & Randolph, smooth, at D/4; half of all cells change it a little."""
     published = 5.3 * 0.25**0.25 * CLAY["su"] * D
     auto, half = halved(sinking())
     tell({"halved clay D/4": shown(auto, half)})

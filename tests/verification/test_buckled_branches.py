@@ -109,9 +109,9 @@ def test_two_ranks_count_as_one() -> None:
 
 @pytest.mark.parametrize("elements", [20, 40])
 def test_just_beyond_lateral_torsional_buckling(elements: int, tmp_path: Path) -> None:
-    """As far as the square root of the excess over the load at which the rod's equations have a second solution; far
-    beyond it towards positive y, as the mode's largest displacement goes there. The mirrored branch is as good, and a
-    load step from a state next to the critical load may find that one.
+    """The deflection is the square root of the excess over the load at which the rod's equations have a second
+    solution; far beyond it towards positive y, as the mode's largest displacement goes there. The mirrored branch is as
+    good, and a load step from a state next to the critical load may find that one.
     """
     rod = Rod(1.0, 1e5, np.array([0.5, 1.0, 1e3]), np.zeros(3), np.eye(3))
     critical = first_buckling([(rod, np.eye(3))], np.array([0.0, 1.0, 0.0]), 2.0, 3.5)
@@ -147,7 +147,7 @@ def test_pushed_frame_far_beyond_buckling(elements: int, tmp_path: Path) -> None
 
 
 def test_the_sign_of_a_mode_hangs_on_no_round_off() -> None:
-    """Of displacements as large as each other the first along the line decides."""
+    """The first of displacements that are equally large along the line decides."""
     wave = np.sin(2.0 * np.pi * np.linspace(0.0, 1.0, 9))[:, None] * np.array([0.0, 1.0])
     for scatter in (1e-14, -1e-14):
         noisy = wave.copy()

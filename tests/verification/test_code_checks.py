@@ -301,7 +301,7 @@ def test_api_by_both_methods(method: int, tmp_path: Path) -> None:
 
 
 def test_api_design_factors_by_case(tmp_path: Path) -> None:
-    """Of method 2 as of method 1: 0.8 in operation, 1 in survival."""
+    """Method 2 has the factors of method 1: 0.8 in operation, 1 in survival."""
     used = []
     for case in ("operating", "survival"):
         scene = hanging(API | {"method": 2, "case": case, "minimum_pressure": "contents"})
@@ -327,7 +327,7 @@ COATED = 0.15  # m, of the coat, which bears the water on itself
 
 
 def test_von_mises_stress_by_api_rp_2rd(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Of a coated pipe, the larger under the design pressure and empty; all recorded instants."""
+    """Stress of a coated pipe, the larger under the design pressure and empty; all recorded instants."""
     coated = STEEL | {"outer_diameter": COATED, "wall": {"outer_diameter": D}}
     done = finished(hanging(RP, pipe=coated, pressure=0.0), tmp_path / "run")
     area, I = 0.25 * np.pi * (D**2 - BORE**2), np.pi / 64.0 * (D**4 - BORE**4)

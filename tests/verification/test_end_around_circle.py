@@ -99,7 +99,7 @@ def wide_circle(folder: Path) -> str:
 
 
 def test_a_bend_that_drag_closes_is_reported(tmp_path: Path) -> None:
-    """As its upper end comes down faster than it sinks the riser buckles into a bend that closes, below the end."""
+    """The riser's upper end comes down faster than it sinks: it buckles into a bend that closes, below the end."""
     scene = catenary_led_around(wide_circle(tmp_path), 70, 0.1)
     said = r"folded at arc 2\d\d m.*had come to [89]\d degrees.*radius is down to 1\.\d+ m"
     with pytest.raises(SolveError, match=said):

@@ -249,7 +249,7 @@ def test_frames_stay_orthonormal_through_a_hundred_turns() -> None:
 
 
 def test_steps_of_changing_size_keep_momentum(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As where Newton's method needs cuts: here every third step is a quarter of the others."""
+    """Newton's method may need cuts: here every third step is a quarter of the others."""
     usual, count = TimeStepper.advance, iter(range(10000))
 
     def advance(stepper: TimeStepper, control: StepControl) -> AcceptedStep:

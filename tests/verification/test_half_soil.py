@@ -53,7 +53,7 @@ def test_so_is_half_under_a_riser_along_y_with_suction_at_small_strain(model: st
 
 @SECTIONS_FIRST
 def test_so_is_half_where_nodes_lie_in_the_plane(model: str) -> None:
-    """Of an even number of cells across, as where the block is narrower than the strip."""
+    """The number of cells across is even, as where the block is narrower than the strip."""
     half, all_of = (
         run(pressed(symmetry, width=0.16, model=model, law={"kind": "von-mises", "su": 900.0, "E_over_su": 200.0}))
         for symmetry in ("auto", "whole")

@@ -16,7 +16,7 @@ LOADS = pytest.mark.parametrize(("direction", "unit"), [(DOWN, boussinesq), (ALO
 
 
 def shares(tell: Tell, kind: str, h: float, direction: Array, unit: Any) -> Array:
-    """Of the half space's displacement 1.5 to 2 m from the patch, in blocks of 4 and 8 m to each side."""
+    """Shares of the half space's displacement 1.5 to 2 m from the patch, in blocks of 4 and 8 m to each side."""
     values = [LoadedBlock(kind, h, half, 0.25 * half, direction).share(unit) for half in (4.0, 8.0)]
     shown = " | ".join(f"{share:.3f}" for share in (*values, 2.0 * values[1] - values[0]))
     tell({f"half space {kind} {h:g} {'down' if direction is DOWN else 'along'}": shown})

@@ -157,7 +157,7 @@ def test_tanks_top_tension_is_of_second_order() -> None:
 
 
 def top_tension(dt: float) -> Array:
-    """Of the hose in the tank through the first seconds of its swing [N]."""
+    """Top tension of the hose in the tank through the first seconds of its swing [N]."""
     tension = list[float]()
     scene = tank(1e6, dt, duration=2.4, ramp=2.4)
     assembly = build(scene, MPI.COMM_SELF)

@@ -39,12 +39,12 @@ L, BASE, TIP, FORCE = 3.0, 8.0e5, 1.0e5, 1.0
 
 
 def stiffness(s: Array) -> Array:
-    """Of a stiffener that tapers linearly in stiffness from its base to its tip."""
+    """Stiffness of a stiffener that tapers linearly in stiffness from its base to its tip."""
     return BASE + (TIP - BASE) * s / L
 
 
 def deflection(count: int, per_segment: int = 2) -> float:
-    """Of the tip, by segments that have the stiffness of their middles."""
+    """Deflection of the tip, by segments that have the stiffness of their middles."""
     joints = np.linspace(0.0, L, count + 1)
     EI = stiffness(0.5 * (joints[1:] + joints[:-1]))
     e = in_a_row([pipe(L / count, per_segment, WEIGHTLESS, EA=1.0e7, EI=each) for each in EI])

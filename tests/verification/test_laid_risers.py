@@ -107,7 +107,7 @@ def test_newton_alone(ground: str, apart: float) -> None:
     ["rigid", *(pytest.param(f"{law} 1500", marks=pytest.mark.verify) for law in CLAYS)],
 )
 def test_newton_alone_in_space(ground: str) -> None:
-    """As in the plane."""
+    """Newton's method alone lays it in space as in the plane."""
     space, plane = (laid(scene(ground, dimension=dimension)) for dimension in (3, 2))
     require_easy(space)
     assert space.end[0].position == pytest.approx(plane.end[0].position, abs=1e-7)

@@ -49,7 +49,7 @@ def hanging(*stages: Mapping, dimension: int = 2) -> Mapping:
 
 
 def over_springs(*stages: Mapping, dimension: int = 2) -> Mapping:
-    """The same riser comes down on a seabed of springs."""
+    """A riser that comes down on a seabed of springs."""
     scene = touchdown(*stages, dimension=dimension)
     del scene["soil"]
     return scene

@@ -1,4 +1,4 @@
-"""The same scenes on 1, 2 and 4 ranks leave the same results."""
+"""Scenes leave the same results on 1, 2 and 4 ranks."""
 
 from __future__ import annotations
 

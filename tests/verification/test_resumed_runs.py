@@ -63,7 +63,9 @@ def condensed_soil() -> Scene:
 
 
 def laid_and_lifted_on_clay() -> Scene:
-    """As many load steps are left as there would have been: they follow from how far the whole stage moves the end."""
+    """A resumed stage takes the load steps that it would have taken: they follow from how far the whole stage moves the
+    end.
+    """
     lift = {"name": "lift", "kind": "static", "move": {"end": [22.5, 0.0, 15.3]}}
     return scene_from_mapping(touchdown(LAY, lift, su=1000.0))
 

@@ -119,7 +119,7 @@ def share(z: float) -> float:
 
 
 def heave(lift: float, t: Array, drag: bool) -> Array:
-    """The same by the equation of a rigid section."""
+    """Heave by the equation of a rigid section."""
     c = ROUGH if drag else 0.0
 
     def rates(_: float, y: Array) -> list[float]:
@@ -144,7 +144,7 @@ def test_a_lying_pipe_heaves_like_a_rigid_section(lift: float, drag: bool) -> No
 
 
 def test_an_upright_pipe_heaves_about_its_draught() -> None:
-    """Of 60 % of the water's density, it floats 60 % immersed; its period is 2 pi sqrt(0.6 L/g)."""
+    """A pipe of 60 % of the water's density floats 60 % immersed; its period is 2 pi sqrt(0.6 L/g)."""
     length, lift = 6.0, 0.4
     scene = riser_scene(
         dynamic(8.0, 0.02, scheme=AVERAGE),

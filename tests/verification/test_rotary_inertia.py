@@ -51,7 +51,7 @@ def test_bending_frequencies_are_rayleighs() -> None:
 
 
 def test_bending_frequencies_converge_at_second_order() -> None:
-    """As the rotary inertia sits at the nodes; it takes a sixth off this frequency."""
+    """The order is two, as the rotary inertia sits at the nodes; it takes a sixth off this frequency."""
     values = np.array([frequencies(2, count, [1, 2])[2] for count in (10, 20, 40)])
     assert orders(values / rayleigh(np.array([3.0])) - 1.0) == pytest.approx([2.0, 2.0], abs=0.1)
 

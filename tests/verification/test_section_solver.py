@@ -65,7 +65,7 @@ def backward_error(system: System, x: Array, load: Array) -> float:
     [pytest.param({}, id="smooth"), pytest.param({"friction": FRICTION}, id="rough", marks=pytest.mark.verify)],
 )
 def test_each_newton_step_solves_its_linear_system(contact: Mapping, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of sections that yield, and of others that don't and keep their factors, from one pattern to the next.
+    """Sections that yield, and others that don't and keep their factors, from one pattern to the next.
 
     Its backward error is that of a direct solver: clay that yields all through has tangents so nearly singular that
     two exact solvers find steps that differ by 1e-4.

@@ -23,7 +23,8 @@ DEPTH, WIDTH, CELLS = 1.5, 0.1, 12  # m; width of the strip; cells along half a 
 
 
 def settlement(grid: DistributedMesh, length: float) -> float:
-    """Of a strip of the width, under a load cos(x/length) [N/m], the amplitude [m]: by the work of the load."""
+    """Settlement of a strip of the width, under a load cos(x/length) [N/m], the amplitude [m]: by the work of the load.
+    """
     soil = Soil(grid, ELASTIC, level=0.0, unit_weight=0.0)
     x, y, z = soil.field.points.T
     load = np.zeros((len(x), 3))

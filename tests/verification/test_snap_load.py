@@ -102,8 +102,8 @@ def wire(time_step: float) -> Mapping:
 
 @pytest.mark.parametrize("time_step", [0.002, 0.001])
 def test_a_wire_that_flies_slack_takes_steps_of_its_own(time_step: float, tmp_path: Path) -> None:
-    """As the tension goes its elements whip about: steps in which one swings by 0.2 rad and more are cut. What such
-    steps made of the tension's energy once folded the wire. Peak as of a mass on a spring that falls by 0.5 m.
+    """The elements of a wire that goes slack whip about: steps in which one swings by 0.2 rad and more are cut. What
+    such steps made of the tension's energy once folded the wire. Peak as of a mass on a spring that falls by 0.5 m.
     """
     run(scene_from_mapping(wire(time_step)), tmp_path)
     (stage,) = Run(tmp_path).summary["stages"]

@@ -103,7 +103,7 @@ def test_strip_on_full_integration_locks() -> None:
 
 
 def assert_quadratic(norms: list[float]) -> None:
-    """Of the last three residual norms, each drop is by at least the power 1.5 of the one before."""
+    """Each drop of the last three residual norms is by at least the power 1.5 of the one before."""
     a, b, c = norms[-3:]
     assert c < max(1e-10, b * (b / a) ** 1.5)
 

@@ -78,7 +78,7 @@ def string(steps_per_cycle: int) -> Array:
 
 
 def first_mode(t: Array, count: int = 10) -> Array:
-    """The same by Galerkin's method with odd modes of the linear string, drag integrated by midpoints."""
+    """The first mode by Galerkin's method with odd modes of the linear string, drag integrated by midpoints."""
     n = np.arange(1, 2 * count, 2)
     s = (np.arange(200) + 0.5) / 200
     shape = np.sin(np.pi * np.outer(n, s))

@@ -35,7 +35,9 @@ DECADES = tuple(10.0**power for power in range(-2, 5))
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """Of the nodes (nn,): arc and height over the bed's surface [m], slope, moment [N.m]. touchdown: arc [m]."""
+    """Nodes (nn,) of a beam on its bed: arc and height over the bed's surface [m], slope, moment [N.m]. touchdown: arc
+    [m].
+    """
 
     arc: Array
     height: Array
@@ -104,7 +106,7 @@ def layer(K: float) -> Layer:
 
 
 def matched_layer(K: float) -> Layer:
-    """The same by matching, with w = H = EI = l = 1: y = -1/K + A1 exp(r1 x) + A2 exp(r2 x) for x < 0 and y'' = 1 + C
+    """The layer by matching, with w = H = EI = l = 1: y = -1/K + A1 exp(r1 x) + A2 exp(r2 x) for x < 0 and y'' = 1 + C
     exp(-x) beyond; y and its first three derivatives are continuous at x = 0, where y = 0. K > 1.
     """
     r = roots(K * EI)

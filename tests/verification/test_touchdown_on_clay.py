@@ -35,8 +35,8 @@ SEABEDS = {"springs": SPRINGS, "R&Q": clay("randolph-quiggin"), "A&B": clay("aub
 
 @dataclass(frozen=True, eq=False)
 class Laid:
-    """Of one load step: touchdown arc [m] as told; arc and share of the length [m] of the stations and their force
-    [N/m], all (n,), and the force by the law of ground that nothing has touched before.
+    """One load step: the touchdown arc [m] that the program gives; arc and share of the length [m] of the stations and
+    their force [N/m], all (n,), and the force by the law of ground that nothing has touched before.
     """
 
     touchdown: float

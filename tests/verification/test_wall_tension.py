@@ -106,7 +106,7 @@ SEA: Mapping = {"density": RHO, "surface_level": 0.0}
 
 
 def stages_of(*given: Mapping, **more: Any) -> list[StageHistory]:
-    """Of a pipe full of oil under 1 MPa, one stage after the other."""
+    """Stages of a pipe full of oil under 1 MPa, one stage after the other."""
     scene = hanging(-10.0, {"density": OIL, "pressure": 1.0e6}, water=SEA, **more)
     return stage_histories(scene | {"stages": list(given)})
 

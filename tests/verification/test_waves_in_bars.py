@@ -155,7 +155,7 @@ def _moving_off(file: Path) -> Path:
 
 
 def test_slack_line_pulled_taut_has_the_tension_of_the_wave(tmp_path: Path) -> None:
-    """Of second order in the step; the line is slack until its end moves."""
+    """The tension is of second order in the step; the line is slack until its end moves."""
     errors = [taut_peak(tmp_path, steps, elements=40) - 1.0 for steps in (20, 40, 80)]
     assert errors[-1] < 5e-3
     assert np.log2(errors[0] / errors[-1]) / 2.0 > 1.8

@@ -193,6 +193,6 @@ def _flow(value: Any) -> str:
 
 
 def _number(value: float) -> str:
-    """As YAML 1.2 writes it: a float has a point, or is .nan or .inf."""
+    """A number as YAML 1.2 writes it: a float has a point, or is .nan or .inf."""
     text = repr(value).replace("inf", ".inf").replace("nan", ".nan")
     return text.replace("e", ".0e") if "e" in text and "." not in text else text

@@ -112,8 +112,8 @@ def ten_km_line_of_400_elements() -> Trial:
 
 @stress_case(quick=True)
 def ten_km_line_of_40_elements() -> Trial:
-    """As before with elements of 250 m, a third of a = H/w: right, or told that the elements are too long for the
-    bend.
+    """Ten kilometres of line with elements of 250 m, a third of a = H/w: right, or told that the elements are too long
+    for the bend.
     """
     return one(long_line(40), _long_line, r"warning: .*element")
 

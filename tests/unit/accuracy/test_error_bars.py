@@ -102,7 +102,7 @@ def test_sources_follow_one_another_and_add_up_as_squares_do() -> None:
 
 
 def test_of_two_coarser_runs_in_one_source_the_larger_share_counts() -> None:
-    """Of first order the two differences are 0.41 and 1.41 times the error; either may be small by chance."""
+    """At first order the two differences are 0.41 and 1.41 times the error; either may be small by chance."""
     near, far = 2.0**0.5, 2.0 * 2.0**0.5
     for first, second in ((near - 1.0, far - 1.0), (near - 1.0, near - 1.0), (0.0, far - near)):
         chain = comparison_run("soil", 1.0 / near, 1000.0 + first), comparison_run("soil", 0.5, 1000.0 + second)
@@ -110,7 +110,7 @@ def test_of_two_coarser_runs_in_one_source_the_larger_share_counts() -> None:
 
 
 def on_soil(tension: float = 1000.0, settled: float = 1e-3) -> RunValues:
-    """Of a stage in which a riser settles [m]."""
+    """Results of a stage in which a riser settles [m]."""
     keys = [KeyResult("hang", "top tension", "N", tension, 0.0), KeyResult("hang", SETTLEMENT, "m", settled, 0.0)]
     known = {each.key: each.value for each in keys}
     peaks = {key: without_windows(x) for key, x in known.items()}
@@ -176,12 +176,14 @@ def test_a_slice_that_fails_leaves_wider_bars(monkeypatch: pytest.MonkeyPatch) -
 
 
 def course(*windows: float, least: bool = False) -> Extreme:
-    """Of a motion, its extreme the last window's."""
+    """Course of a motion whose extreme is in the last window."""
     return Extreme(windows[-1], np.array(windows), least)
 
 
 def test_runs_that_agree_in_the_extreme_by_chance_are_apart_in_windows_near_it() -> None:
-    """Of windows at 0, 9 and 10 those above 8 count: differences of 3 and 0 there, and of 0 in the extreme itself."""
+    """Windows at 9 and 10 count, as they are above 8; the one at 0 does not: differences of 3 and 0 there, and of 0 in
+    the extreme itself.
+    """
     run, other = course(0.0, 9.0, 10.0), course(50.0, 12.0, 10.0)
     assert difference(run, other) == pytest.approx(math.sqrt(0.5 * (0.0 + 9.0 / 2.0)))
     upside_down = (course(*(-each.windows), least=True) for each in (run, other))
@@ -189,7 +191,9 @@ def test_runs_that_agree_in_the_extreme_by_chance_are_apart_in_windows_near_it()
 
 
 def test_windows_that_are_not_known_do_not_count() -> None:
-    """As where a riser does not touch; a quantity that has no course at all is its extreme alone."""
+    """A riser that does not touch has windows that are not known; a quantity that has no course at all is its extreme
+    alone.
+    """
     assert difference(course(math.nan, 9.0, 10.0), course(1.0, math.nan, 14.0)) == pytest.approx(4.0)
     assert difference(course(9.0, 10.0), course(math.nan, math.nan)._replace(value=13.0)) == 3.0
     assert difference(without_windows(10.0), course(9.0, 13.0)) == 3.0

@@ -64,7 +64,7 @@ def test_wide_cells_settle_less_by_their_logarithm() -> None:
 
 
 def test_cells_that_resolve_what_touches_are_right() -> None:
-    """Of D/64, where D/15 touches."""
+    """Cells of D/64, where D/15 touches."""
     assert fine(laid(D / 64.0), 2.0e-3) == pytest.approx([2.0e-3], rel=0.01)
 
 
@@ -115,6 +115,6 @@ def test_where_no_slice_tells() -> None:
 
 @pytest.mark.parametrize(("along", "many"), [(0.5, True), (5.0, True), (6.0, False)])
 def test_soil_of_a_few_slices(along: float, many: bool) -> None:
-    """Of 16 m; three cells are many."""
+    """Slices of 16 m; three cells are many."""
     for axis in (0, 1):
         assert has_many_slices(laid(WIDE, along=along, axis=axis)) is many

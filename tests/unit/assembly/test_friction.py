@@ -195,7 +195,7 @@ ROUND = Penalty(4.0e4, smoothing=30.0)  # its rounded corner holds the whole sam
 
 
 def test_arc_below_the_seabed() -> None:
-    """Of a pipe above it, on it, sunk in by a quarter of its diameter (a third of a turn), by half and more."""
+    """A pipe above the seabed, on it, sunk in by a quarter of its diameter (a third of a turn), by half and more."""
     D, clay = 0.4, Adhesion(0.5, Strength(2.0e3, 3.0e3), 0.4)
     z = np.array([-0.1, 0.0, 0.25 * D, 0.5 * D, 0.7 * D])
     adhesion, slope = np.transpose([adhesion_at(clay, depth) for depth in z])

@@ -106,7 +106,7 @@ def test_a_trench_needs_sizes_of_tetrahedra() -> None:
 
 
 def test_the_block_lies_around_the_touchdown_points() -> None:
-    """Of the catenary at rest: a parabola nearly, x_end - x_0 = (H/w) arcosh(1 + w z/H)."""
+    """The touchdown point is that of the catenary at rest: a parabola nearly, x_end - x_0 = (H/w) arcosh(1 + w z/H)."""
     scene = automatic(LAY)
     predicted = forecast(scene, elements_of(scene), list(end_places(scene, sea_of(scene))))
     assert predicted is not None

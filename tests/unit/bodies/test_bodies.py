@@ -91,7 +91,7 @@ def test_what_held_a_body_has_its_reaction_at_first_and_nothing_at_last(turns: b
 
 
 def test_inertia_of_a_body_that_is_thrown() -> None:
-    """Of a centre of gravity beside the origin: f = m a of the centre, m = J A + W x J W about it."""
+    """With a centre of gravity beside the origin, f = m a of the centre, m = J A + W x J W about it."""
     given = properties()
     plain = BodyProperties(
         given.mass, given.inertia, given.gravity_centre, 0.0, np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3),

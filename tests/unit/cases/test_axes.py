@@ -84,7 +84,7 @@ def test_near_is_towards_the_other_end_and_mean_is_no_offset(tmp_path: Path) -> 
 
 
 def test_offsets_are_a_share_of_the_water_depth(tmp_path: Path) -> None:
-    """Of 12 m, and of 15 m over a seabed 3 m deeper."""
+    """The depth is 12 m, and 15 m over a seabed 3 m deeper."""
     for text, distance in (("offsets: 25 %", 3.0), ("set: {seabed.level: -3.0}\noffsets: 20%", 3.0)):
         _, _, far = cases(tmp_path, text)
         assert far.values["vessel.offset"] == pytest.approx([0.6 * distance, 0.8 * distance, 0.0])

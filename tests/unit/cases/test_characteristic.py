@@ -63,7 +63,7 @@ def test_a_fractile_of_many_seeds_is_that_of_the_distribution() -> None:
 
 
 def test_the_fractile_is_the_share_of_long_sea_states_that_stay_below() -> None:
-    """Of three blocks of 1200 s together, the largest is below it in 95 of 100 of them."""
+    """The largest of three blocks of 1200 s is below the fractile in 95 of 100 cases."""
     (extreme,) = extremes_of({"storm": drawn(20000)})
     largest = np.random.default_rng(9).gumbel(MODE, SCALE, (20000, 3)).max(axis=1)
     assert (largest < extreme.characteristic.value).mean() == pytest.approx(0.95, abs=0.01)

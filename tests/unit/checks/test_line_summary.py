@@ -99,7 +99,7 @@ def test_touchdown_by_hand_of_a_catenary() -> None:
 
 
 def test_touchdown_of_the_start_where_it_hangs() -> None:
-    """The same line from its other end."""
+    """A line that is given from its other end."""
     arc, plan, *_ = numbers(hand_checked(scene())[-1])
     turned = scene(end=(80.0, 0.0, 0.15), start={"position": [0.0, 0.0, 100.0]})
     _, top, touchdown = hand_checked(turned)

@@ -138,7 +138,7 @@ def test_soil_is_compared_with_what_is_known_to_bear() -> None:
 
 
 def test_mean_over_a_length() -> None:
-    """Of a force on one node: all of it over the length, or its own share of the riser where that is longer."""
+    """A force on one node counts with all of it over the length, or its own share of the riser where that is longer."""
     line = lying({"kind": "rigid"}).riser.line
     force = np.where(np.arange(line.nodes) == 30, 900.0, 100.0)
     share = line.tributary_length[30]

@@ -107,7 +107,7 @@ def test_collapse_pressure_between_yield_and_elastic_one() -> None:
 
 
 def test_yield_and_plastic_resistances_of_a_thin_ring() -> None:
-    """Of a ring of mean radius r: T = 2 pi r t S, M_y = pi r^2 t S, M_p = 4 r^2 t S."""
+    """A ring of mean radius r has T = 2 pi r t S, M_y = pi r^2 t S, M_p = 4 r^2 t S."""
     r, t, S = 5.0, 0.01, 400.0
     D = 2.0 * r + t
     assert api_std_2rd.yield_tension(D, t, S) == pytest.approx(2.0 * np.pi * r * t * S)
@@ -216,7 +216,7 @@ RP_PIPE = (0.2731, 0.0270)  # D, t of a 10 3/4 inch pipe [m]
 
 
 def test_stresses_of_pressure_are_means_over_the_wall() -> None:
-    """Of Lame's tube, at Gauss points of the radius."""
+    """Means of Lame's stresses, at Gauss points of the radius."""
     D, t = RP_PIPE
     at, weights = np.polynomial.legendre.leggauss(20)
     zero = np.zeros(20)

@@ -43,7 +43,7 @@ def test_resistances_under_internal_pressure() -> None:
 
 
 def test_resistances_under_less_internal_overpressure() -> None:
-    """Of the sheet for external overpressure, with 3 ksi inside and 1 ksi outside."""
+    """The sheet for external overpressure, with 3 ksi inside and 1 ksi outside."""
     assert moment_resistance(2.0) == pytest.approx(1759.625046, rel=SHOWN)
     p_b = dnv_st_f201.bursting_resistance(D, T2, FY, FU)
     alpha_c = dnv_st_f201.flow_stress_parameter(D, T2, FY, FU, 2.0, p_b)

@@ -128,7 +128,7 @@ def test_a_motion_table_says_that_it_needs_scipy(tmp_path: Path) -> None:
 
 @pytest.fixture
 def no_mpi_yet(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As in a process that was started alone and has not imported MPI."""
+    """A process that was started alone and has not imported MPI."""
     monkeypatch.delitem(sys.modules, "mpi4py.MPI", raising=False)
     for name in (*communicator.SIZES, *communicator.RANKS):
         monkeypatch.delenv(name, raising=False)

@@ -40,7 +40,7 @@ def test_the_width_that_touches_is_hertzs() -> None:
 
 
 def test_stiffness_follows_from_the_soil_and_from_the_weight() -> None:
-    """Of the soil's modulus ten times at nodes, twenty times all over the surface, or more: no more than D/1000 is to
+    """Ten times the soil's modulus at nodes, twenty times all over the surface, or more: no more than D/1000 is to
     be sunk in.
     """
     scene = scene_from_mapping(touchdown() | {"seabed": {"kind": "rigid"}})

@@ -115,7 +115,7 @@ def all_points(points: Array, along: tuple[float, float], spacing: float) -> Nea
 
 
 def test_cells_far_larger_than_what_touches_have_no_more_points_along_than_they_need() -> None:
-    """Of a triangle of 1 m as fine across the riser as 1 mm, 12 points along it."""
+    """A triangle of 1 m is as fine across the riser as 1 mm, 12 points along it."""
     points = top("tri6", 1, 1, size=1.0)
     parts = divisions(points.points, points.facets, np.array([1.0, 0.0]), (4e-3, 1e-3), element=1.0)
     np.testing.assert_array_equal(parts[:, :2], [[LARGEST, ENOUGH]] * 2)

@@ -38,7 +38,7 @@ numbers = st.floats(-2.0, 2.0)
 
 
 class BareData(NamedTuple):
-    """Of what has no kernels."""
+    """Data of what has no kernels."""
 
     k: float
 

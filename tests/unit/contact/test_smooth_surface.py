@@ -115,7 +115,7 @@ def test_the_curve_goes_through_nodes_with_the_slope_between_their_neighbours() 
 
 
 def test_strips_reach_to_the_next_nodes_across() -> None:
-    """Of a grid two facets long and three wide, numbered across first; at its rim nodes stand for themselves."""
+    """On a grid two facets long and three wide, numbered across first; at its rim nodes stand for themselves."""
     number = np.arange(12).reshape(3, 4)
     cells = [number[i : i + 2, j : j + 2] for i in range(2) for j in range(3)]
     quads = np.array([[n[0, 0], n[1, 0], n[1, 1], n[0, 1]] for n in cells])

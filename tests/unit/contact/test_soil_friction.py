@@ -94,7 +94,9 @@ def dragged(made: PipeOnSurface, friction: SoilFriction, way: float) -> float:
 
 
 def test_dragged_far_it_resists_with_the_adhesion_of_what_touches() -> None:
-    """Of each point, or with mu times its pressure where that is less; all of it comes into force at A/k."""
+    """Each point resists with its adhesion, or with mu times its pressure where that is less; all of it comes into
+    force at A/k.
+    """
     made = pipe_on_surface(level(), top("quad4"))
     limit = clay(made)
     friction = with_friction(made, limit)

@@ -189,7 +189,7 @@ def test_settlement_is_the_depth_less_the_penetration(kind: str) -> None:
 
 @KINDS
 def test_sections_lie_across_the_riser_and_stay(kind: str) -> None:
-    """Of a surface that settled by a plane; offsets count to the left along growing arc length."""
+    """The surface settled by a plane; offsets count to the left along growing arc length."""
     surface = top(kind)
     surface.committed[:, 2] = -0.01 - 0.003 * surface.points[:, 0] + 0.005 * surface.points[:, 1]
     made = pipe_on_surface(sagging(angle=0.3), surface)

@@ -52,7 +52,7 @@ def test_a_field_does_not_stick_to_the_mesh() -> None:
 
 
 def test_what_points_of_contact_remember_does_not_stick_to_them() -> None:
-    """The same of what is kept of those points alone that touch."""
+    """Memory is kept of those points alone that touch."""
     y, x = np.meshgrid(np.arange(30.0), np.arange(4.0), indexing="ij")
     places = np.stack([x.ravel(), y.ravel(), 0.0 * y.ravel()], axis=1)
     numbers, memory = np.arange(len(places)), PointMemory(np.zeros(1))

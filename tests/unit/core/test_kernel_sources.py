@@ -117,7 +117,7 @@ def edit(file: Path, old: str, new: str) -> None:
 
 
 def test_an_edit_compiles_what_depends_on_it_and_nothing_else(package: Path) -> None:
-    """Of a module that another one inlines, of one that none does, and of a kernel that is chosen by a type."""
+    """Edits of a module that another one inlines, of one that none does, and of a kernel that is chosen by a type."""
     assert called(package)[0] == [36.0, 9.0, 15.0]
     assert called(package) == ([36.0, 9.0, 15.0], set())
     edit(package / "sea" / "speed.py", "2.0", "4.0")

@@ -115,7 +115,7 @@ def test_files_have_what_the_table_has() -> None:
 
 
 def test_pages_give_the_table_s_symbols_and_units() -> None:
-    """Of the results in the table of docs/conventions.md; one unit there may serve several words."""
+    """Symbols and units of the results in the table of docs/conventions.md; one unit there may serve several words."""
     table = text(ROOT / "docs/conventions.md").split("| word | symbol | unit | meaning |")[1].split("\n\n")[0]
     known = {output.name: output for output in TABLE}
     seen = set()

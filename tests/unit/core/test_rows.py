@@ -205,7 +205,7 @@ fixed_two = fixed(2)
 
 @pytest.mark.parametrize("seed", range(4))
 def test_each_function_is_its_plain_loops(seed: int) -> None:
-    """Of random numbers, at random places, in a plane and in space."""
+    """Both write the same of random numbers, at random places, in a plane and in space."""
     rng = np.random.default_rng(seed)
     d, r = ((2, 1), (3, 3))[seed % 2]
     n, count, at, x = 2 * (d + r), int(rng.integers(1, 9)), int(rng.integers(0, 5)), float(rng.normal())

@@ -230,7 +230,9 @@ def test_more_modes_than_there_are_may_be_asked_for() -> None:
 
 
 def test_half_waves_as_short_as_elements_have_no_shape() -> None:
-    """Of a hinged beam of two elements the second mode, and of one element all: the nodes turn where they are."""
+    """In the second mode of a hinged beam of two elements, and in all modes of one element, the nodes turn where they
+    are.
+    """
     modes = lowest_modes(stretched(2), 2)
     assert modes.direction == ["in plane", "at no node"]
     assert not modes.line.shape[1].any()

@@ -179,13 +179,13 @@ def test_the_command_writes_a_scene_once(tmp_path: Path) -> None:
     ],
 )
 def test_friction_along_and_across(rows: str, friction: tuple[float, float], tmp_path: Path) -> None:
-    """Of MoorDyn-F two coefficients; of MoorDyn-C one."""
+    """MoorDyn-F has two coefficients, MoorDyn-C one."""
     given = read(deck(tmp_path, DECK.replace("0.3           FrictionCoefficient", rows)))["contact"]["friction"]
     assert (given["axial"], given["lateral"]) == friction
 
 
 def test_friction_in_one_direction_alone_is_reported(tmp_path: Path) -> None:
-    """Of the two coefficients of MoorDyn-F each is 0 where it is not given."""
+    """Each of the two coefficients of MoorDyn-F is 0 where it is not given."""
     imported = scene_of(deck(tmp_path, DECK.replace("0.3           FrictionCoefficient", "0.6 MU_KT")))
     assert "contact" not in imported.data
     line_with([f"{line}: {text}" for line, text in imported.remarks], "38:", "friction", "0 along", "0.6 across")

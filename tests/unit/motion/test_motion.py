@@ -68,7 +68,7 @@ def test_starts_at_rest_at_the_origin(name: str) -> None:
 
 
 def derivative(f: Callable[[float], Array], t: float, h: float = 1e-3) -> Array:
-    """Of fourth order; where f is twice continuously differentiable only, of the first."""
+    """Difference of fourth order; where f is twice continuously differentiable only, of the first."""
     return (8.0 * (f(t + h) - f(t - h)) - f(t + 2.0 * h) + f(t - 2.0 * h)) / (12.0 * h)
 
 

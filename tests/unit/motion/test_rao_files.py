@@ -115,8 +115,8 @@ def test_other_forms(tmp_path: Path) -> None:
 
 
 def by_capytaine(version: int, along: str = "omega") -> Variables:
-    """As its export_dataset writes them: scalars, waves by all their measures along one of them, other matrices; in
-    version 3 the body's centre of rotation, too.
+    """RAOs as Capytaine's export_dataset writes them: scalars, waves by all their measures along one of them, other
+    matrices; in version 3 the body's centre of rotation, too.
     """
     k, shape = OMEGA**2 / G, (OMEGA.size, 6, 6)
     measures = {"omega": OMEGA, "freq": OMEGA / (2.0 * math.pi), "period": 2.0 * math.pi / OMEGA,
@@ -146,7 +146,7 @@ def test_files_of_capytaine(version: int, along: str, tmp_path: Path) -> None:
 
 
 def test_names_by_their_letters(tmp_path: Path) -> None:
-    """As netCDF's classic model has words."""
+    """Names as rows of letters, as netCDF's classic model has them."""
     letters = np.array([name.ljust(5) for name in DOFS], dtype="S5").view("S1").reshape(6, 5)
     rao = written(tmp_path, changed(radiating_dof=(("radiating_dof", "string5"), letters)))
     assert [*rao.response] == [name.lower() for name in DOFS]

@@ -100,7 +100,7 @@ def test_velocities_and_accelerations_are_the_derivatives(tmp_path: Path) -> Non
 
 
 def test_it_is_the_table_of_the_end(tmp_path: Path) -> None:
-    """Of its displacements and rotation vectors, worked out by hand row by row."""
+    """Table of the end's displacements and rotation vectors, worked out by hand row by row."""
     known = [by_hand(float(t), 0.0) for t in T]
     rows = np.array([[*(x - VESSEL_END), *Rotation.from_matrix(R).as_rotvec()] for x, R in known])
     header = "t [s], x [m], y [m], z [m], rx [rad], ry [rad], rz [rad]\n"

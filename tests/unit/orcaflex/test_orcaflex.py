@@ -78,7 +78,7 @@ def test_what_is_not_carried_over_is_reported_by_line(tmp_path: Path) -> None:
 
 
 def test_a_value_that_nothing_knows_is_reported(tmp_path: Path) -> None:
-    """Of the line type, of the line, of a table's column, and a section of its own."""
+    """Unknown values of the line type, of the line, of a table's column, and an unknown section."""
     text = changed(
         ("    Cl: 0\n", "    Cl: 0\n    Novel: 3\n"),
         ("ConnectionGamma\n", "ConnectionGamma, ConnectionPayoutRate\n"), ("0, 170, 0]", "0, 170, 0, 0.5]"),

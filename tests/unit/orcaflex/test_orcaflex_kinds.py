@@ -168,7 +168,7 @@ def test_drag_and_added_mass_by_single_names(across: str, along: str, tmp_path: 
     ("given", "EI", "GJ"), [("GJ: 0", "[50, ~]", 5.0e4), ("GJ: ~", "[50, ~]", 5.0e4), ("GJ: 0", "[0, ~]", 1e-4 * 3.6e7)]
 )
 def test_a_line_that_does_not_twist(given: str, EI: str, GJ: float, tmp_path: Path) -> None:
-    """As stiff as it bends, or 1e-4 EA D^2 of a chain, and said so."""
+    """Torsion as stiff as bending, or 1e-4 EA D^2 of a chain, and said so."""
     result = imported(tmp_path, changed(("GJ: 12", given), ("EI: [50, ~]", f"EI: {EI}")))
     (hose,) = the_types(result.data)
     assert hose["GJ"] == pytest.approx(GJ)

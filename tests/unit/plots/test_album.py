@@ -100,7 +100,7 @@ def test_a_range_is_shown_near_the_touchdown_points_too(run: Run) -> None:
 
 
 def test_what_is_unknown_near_the_touchdown_points_is_not_shown_there(run: Run, tmp_path: Path) -> None:
-    """As a utilisation of the upper half of a riser, of another line type than what touches down."""
+    """A utilisation of the upper half of a riser, of another line type than what touches down."""
     folder = tmp_path / "half"
     record(folder, duration=0.3)
     (folder / "scene.yaml").write_text(SCENE, encoding="utf-8")
@@ -239,7 +239,7 @@ def test_the_seabed_is_drawn_where_it_is(run: Run) -> None:
 
 
 def test_a_single_node_near_the_lowest_point_has_room_around_it(tmp_path: Path) -> None:
-    """As where elements are long: its place is in the middle of the picture, drawn without a complaint."""
+    """Elements are long there: its place is in the middle of the picture, drawn without a complaint."""
     ends = {"start": prescribed(0.0, 0.0, 10.0), "end": prescribed(30.0, 0.0, 10.0)}
     pipe = {"EA": 1.0e8, "EI": 1.0, "mass": 20.0, "submerged_weight": 100.0}
     more = ends | {"riser": {"initial": "catenary"}, "gravity": 9.81}

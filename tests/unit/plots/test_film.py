@@ -70,7 +70,7 @@ def test_the_field_and_the_magnification_count(folder: Path) -> None:
 
 
 def test_an_mp4_is_ffmpeg_s(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of a stand-in that notes its arguments and how many bytes of frames it got."""
+    """A stand-in for ffmpeg notes its arguments and how many bytes of frames it got."""
     nowhere = folder / "bin"
     nowhere.mkdir()
     monkeypatch.setenv("PATH", str(nowhere))

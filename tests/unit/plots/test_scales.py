@@ -35,7 +35,7 @@ def test_the_thickest_segment_tells_the_diameter() -> None:
 
 
 def test_without_a_diameter_it_is_that_of_a_solid_bar() -> None:
-    """Of 0.1 m: EA = E pi D^2/4, EI = E pi D^4/64."""
+    """A bar of 0.1 m: EA = E pi D^2/4, EI = E pi D^4/64."""
     E = EA / (np.pi * 0.1**2 / 4.0)
     assert scales_of(line(1.0, EI=E * np.pi * 0.1**4 / 64.0)).diameter == pytest.approx(0.1)
     assert scales_of(line(1.0)).diameter == pytest.approx(LENGTH / 1000.0), "a chain"

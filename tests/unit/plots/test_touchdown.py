@@ -35,7 +35,7 @@ def exact(end: float, layer: float) -> float:
 
 
 def intervals(arc: Array, share: Array, clearance: Array, force: Array) -> list[ContactInterval]:
-    """Of one state."""
+    """Intervals of contact in one state."""
     (interval,) = contact_intervals(arc, share, clearance[None], force[None])
     return interval
 
@@ -141,7 +141,7 @@ def test_moves_as_smoothly_as_the_forces(layer: float) -> None:
 
 
 def settled(arc: Array, end: float, layer: float) -> tuple[Array, Array]:
-    """As `landed`, but the force sets in smoothly."""
+    """A landed riser like that of `landed`, but the force sets in smoothly."""
     t = np.maximum((end - arc) / layer, 0.0)
     force = W * (1.0 - np.exp(-2.0 * t**3)) + 2.0 * R / layer * np.exp(-t) * np.sin(t) ** 3
     return np.where(t > 0.0, -1e-9 * force, 1e-6 * (end - arc) ** 2), force

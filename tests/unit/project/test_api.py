@@ -183,7 +183,7 @@ def test_the_notebook_runs(tmp_path: Path) -> None:
 
 @pytest.mark.verify
 def test_two_seeds_of_the_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As a script, in short."""
+    """The example as a short script."""
     short = TWENTY_SEEDS.replace("range(1, 21)", "(1, 2)").replace("demos/waves", str(ROOT / "demos/waves"))
     short = short.replace('{"water', '{"stages.1.duration": 2.0, "water.waves.ramp": 1.0, "water')
     done = subprocess.run([sys.executable, "-c", short], cwd=tmp_path, capture_output=True, text=True, check=True)

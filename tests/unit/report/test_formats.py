@@ -119,7 +119,7 @@ def test_a_word_document_has_what_the_document_has(document: ReportDocument, tmp
 
 
 def test_the_command_writes_all_formats(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of one chapter, as drawing all pictures is the page's test."""
+    """A report of one chapter, as drawing all pictures is the page's test."""
     monkeypatch.setattr(writing, "CHAPTERS", (writing.summary_chapter.chapter,))
     record(tmp_path / "run", duration=0.4)
     for ending, begins in ((".html", b"<!DOCTYPE"), (".pdf", b"%PDF"), (".docx", b"PK"), (".PDF", b"%PDF")):

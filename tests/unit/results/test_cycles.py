@@ -74,7 +74,7 @@ def test_ground_without_strength_and_another_period(folder: Path) -> None:
 
 
 def test_strength_is_that_of_the_surface(folder: Path) -> None:
-    """Of the first layer, and of a seabed of clay where there is no soil."""
+    """Strength of the first layer, and of a seabed of clay where there is no soil."""
     soil = dict(SCENE["soil"])
     law = soil.pop("law")
     layers = [{"to": 0.5, "law": law}, {"law": law | {"su": 2.0 * SU}}]

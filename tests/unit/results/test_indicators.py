@@ -156,8 +156,8 @@ def test_a_least_tension_that_turns_sharply_is_a_warning() -> None:
     [(0.0, 10.0), (50.0, 10.0), (200.0, 20.0), (900.0, 30.0), (-150.0, 10.0), (-300.0, 15.0), (-800.0, 30.0)],
 )
 def test_least_tension_is_reported_from_a_tenth_of_its_size(least: float, allowed: float) -> None:
-    """Of compression from a twentieth; within 1 and 3 % of the largest tension. V-shaped, by a little more or less than
-    what is allowed.
+    """Compression counts from a twentieth; within 1 and 3 % of the largest tension. V-shaped, by a little more or less
+    than what is allowed.
     """
     for factor, warned in ((0.99, False), (1.01, True)):
         off = factor * allowed / (2.0 * SHARE)

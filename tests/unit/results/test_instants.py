@@ -43,7 +43,7 @@ def test_figures_of_many_are_those_of_each() -> None:
 
 
 def test_walls_of_many_are_those_of_each() -> None:
-    """Of two sections at a joint now the one governs, now the other."""
+    """At a joint of two sections now the one governs, now the other."""
     wall = Wall(np.array([0.30, 0.28]), np.array([0.20, 0.25]))
     sections = wall_sections(wall, np.zeros(2), np.ones((2, 2)))
     stress = np.array([[1.0, 2.0, 5.0, 6.0], [1.0, 5.0, 2.0, 6.0]])

@@ -42,7 +42,7 @@ def record_at(t: float) -> Record:
 
 
 def test_only_what_sits_between_nodes_is_replaced() -> None:
-    """Of the figures, the least tension alone is told at nodes."""
+    """The least tension is the only figure at nodes."""
     tension = (ARC - 67.0) ** 2
     at_node = {"least_tension": tension.min(), "least_tension_arc": ARC[tension.argmin()]}
     least = record_at(0.0).with_values(effective_tension=tension, **at_node)

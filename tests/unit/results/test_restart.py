@@ -133,7 +133,7 @@ def left_run(left_once: Path, tmp_path: Path) -> Path:
 
 @pytest.fixture
 def checkpoint(tmp_path: Path) -> Path:
-    """Of a run that has not begun."""
+    """A checkpoint of a run that has not begun."""
     path = tmp_path / run_folder.CHECKPOINT
     write_checkpoint(path, About(__version__, 1, identity_of(scene_of())), [{"stepper/before/u": np.arange(3.0)}])
     return path
@@ -207,7 +207,7 @@ def test_error_bars_can_not_begin_on_the_way(checkpoint: Path) -> None:
 
 
 def test_results_that_lack_what_they_had_are_refused(left_run: Path) -> None:
-    """As another run's files that somebody has put beside the checkpoint."""
+    """Another run's files, for instance, that somebody has put beside the checkpoint."""
     leave_after(1, scene_of(), left_run / "shorter")
     (left_run / "shorter" / "results.nc").replace(left_run / "results.nc")
     with pytest.raises(ResultsError, match=telling("results.nc:", "lacks records")):

@@ -70,7 +70,7 @@ def test_without_a_running_clock_slugs_stand() -> None:
 
 
 def matrices_of(part: InnerFlow, t: float) -> FlowMatrices:
-    """As they are at a time."""
+    """The matrices of contents at a time."""
     part.renew_kernel_data(t, t)
     numbers: Any = part.kernel_data()
     matrices: FlowMatrices = numbers.now
@@ -105,7 +105,7 @@ def test_weight_and_centrifugal_force_grow_with_the_load_factor() -> None:
 
 @pytest.mark.parametrize("t", [0.3, 1.9, 3.1])
 def test_weight_and_inertia_are_those_of_what_is_in_the_pipe(t: float) -> None:
-    """As it begins and ends within elements: resultant, moment about the start and mass, by hand."""
+    """Contents begin and end within elements: resultant, moment about the start and mass, by hand."""
     at = sample(2, shaken=False)
     line, flow = at.line, Flow(850.0, 2.0, [SlugTrain(300.0, 3.0, 0.5)], G)
     part = part_in(line, flow)

@@ -32,7 +32,7 @@ LAYER = math.pi * T * (D + T)  # m2
 
 
 def by_hand(scene: Mapping) -> Mapping:
-    """The same with the growth in the line type."""
+    """The scene with the growth in the line type."""
     given = deepcopy(scene)
     pipe = given["line_types"]["pipe"]
     pipe["outer_diameter"] += 2.0 * T

@@ -16,7 +16,7 @@ def turned(axis: Array, angle: float, v: Array) -> Array:
 
 
 def swung(spin: float, swing: float, twist: float, most: float, loose: float = 0.0) -> int:
-    """Of three elements the second one spins as a whole, and its second end swings and twists beyond that; its chord is
+    """The second of three elements spins as a whole, and its second end swings and twists beyond that; its chord is
     2 m long.
     """
     along, aside, up = np.eye(3)

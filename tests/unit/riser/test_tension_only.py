@@ -58,7 +58,7 @@ def test_what_unfolds_is_the_derivative_of_its_energy() -> None:
 
 
 def test_a_slack_element_pulls_by_a_ten_thousandth_of_the_lines_weight() -> None:
-    """Of 4 elements of 5 m and 200 N/m the first bends."""
+    """The first of 4 elements of 5 m and 200 N/m bends."""
     bends = np.array([True, False, False, False])
     law = law_of(bends, np.full(4, 200.0), np.full(4, 5.0), np.full(4, 1e8))
     assert isinstance(law, TensionOnly)

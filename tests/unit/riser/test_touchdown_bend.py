@@ -22,7 +22,9 @@ def pipe(bend: TouchdownBend, s: Array) -> Array:
 
 
 def derivatives(bend: TouchdownBend, s: float, h: float) -> Array:
-    """Of the height at s, orders 0 to 4, by a polynomial through nine places h apart that all lie on one side."""
+    """Derivatives of the height at s, orders 0 to 4, by a polynomial through nine places h apart that all lie on one
+    side.
+    """
     t = np.arange(9.0) * (1.0 if s >= 0.0 else -1.0)
     fit = np.polynomial.Polynomial.fit(t, pipe(bend, s + h * t), 8)
     return np.array([float(fit.deriv(n)(0.0)) / h**n if n else float(fit(0.0)) for n in range(5)])

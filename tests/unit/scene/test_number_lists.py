@@ -38,7 +38,7 @@ LISTS = {
 
 
 def slowly(text: str, monkeypatch: pytest.MonkeyPatch) -> Document:
-    """As the YAML reader reads it all."""
+    """The text as the YAML reader reads it."""
     with monkeypatch.context() as patch:
         patch.setattr(document, "without_lists", lambda text: (text, {}))
         return parse(text, "scene")

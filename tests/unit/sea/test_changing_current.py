@@ -98,7 +98,7 @@ PIPE |= {"drag": {"normal": 1.1, "tangential": 0.05}, "added_mass": {"normal": 1
 
 @pytest.mark.parametrize("coefficients", [True, False])
 def test_a_floating_pipe_goes_with_the_water(coefficients: bool) -> None:
-    """As heavy as the water that it displaces, it is accelerated by m + m_a as the water pushes by rho A + m_a."""
+    """A pipe as heavy as the water that it displaces is accelerated by m + m_a as the water pushes by rho A + m_a."""
     history = [{"time": 1.0, "profile": [[0.0, 0.0, 0.0]]}, {"time": 5.0, "profile": [[0.0, 2.0, 0.0]]}]
     pipe = PIPE if coefficients else {key: PIPE[key] for key in ("outer_diameter", "mass", "EA", "EI")}
     (drift,) = stage_histories(

@@ -148,7 +148,7 @@ def test_a_pipe_that_drifts_with_the_current_feels_nothing() -> None:
 
 
 def test_loads_do_not_depend_on_the_frame_of_reference() -> None:
-    """The same pipe in the same water, both seen from a ship under way."""
+    """A pipe and its water are seen from a ship under way."""
     at, ship = sample(3), np.array([1.2, -0.4, 0.3])
     state = at.state(2)
 

@@ -124,7 +124,7 @@ def test_a_resolved_scene_is_read_as_the_same() -> None:
 
 
 def test_segments_without_a_table_have_none() -> None:
-    """Of two line types one has a table; the other keeps its coefficient."""
+    """One of two line types has a table; the other keeps its coefficient."""
     scene = sea({"normal": 1.1})
     scene["line_types"]["rough"] = deepcopy(scene["line_types"]["pipe"]) | {"drag": {"by_reynolds": [[1e5, 1.1]]}}
     scene["line_types"]["pipe"]["drag"] = scene["line_types"]["rough"]["drag"] | {}

@@ -103,7 +103,7 @@ def test_directions(given: dict[str, Any], standard_name: str, toward: float, tm
 
 
 def test_one_sea_of_several_as_packed_numbers(tmp_path: Path) -> None:
-    """As wavespectra writes them, in whole numbers of 1e-5, with other dimensions before."""
+    """Numbers are packed as wavespectra writes them, in whole numbers of 1e-5, with other dimensions before."""
     packed = np.round(np.stack([density(), 4.0 * density()])[:, None] * 1e5).astype("i4")
     attributes = {"efth": {"scale_factor": 1e-5, "_FillValue": np.int32(-32768)}}
     several = {**variables(density()), "efth": (("time", "site", "freq", "dir"), packed)}

@@ -80,7 +80,7 @@ def turned(motion: WaterMotion) -> tuple[Array, Array, Array]:
 
 @cases
 def test_surface_and_velocity_are_the_librarys(theory: str, H: float, h: float) -> None:
-    """Of a wave of the same length, of as many terms."""
+    """The library's wave has the same length and as many terms."""
     wave, deep = made(theory, H, h), min(h, 300.0)
     kinds: dict[str, Any] = {"stokes": raschii.StokesWave, "stream-function": raschii.FentonWave}
     theirs = kinds[theory](H, deep, wave.length, N=wave.rise.size, g=G)

@@ -129,7 +129,7 @@ def test_the_phase_locks_where_its_frequency_is_the_oscillations(frequency: floa
 
 @pytest.mark.parametrize("frequency", [0.15, 0.22])
 def test_in_line_the_phase_follows_the_motion_along_the_flow(frequency: float) -> None:
-    """As it does across; the flow's velocity through the water is taken for steady here."""
+    """The phase follows as it does across; the flow's velocity through the water is taken for steady here."""
     ahead, rates = locked(frequency, 80, in_line=True)
     np.testing.assert_allclose(np.sin(ahead), (frequency - MIDDLE) / WIDTH, atol=1e-3)
     assert np.cos(ahead).min() > 0.0
@@ -175,7 +175,7 @@ def test_tangent_is_the_derivative_of_the_residual(make: Callable[[Sample], Vort
 
 
 def test_a_stage_begins_with_the_rate_of_its_motion() -> None:
-    """As a step of no length does that has known the rate; a pipe at rest sheds at the middle frequency."""
+    """A step of no length that knows the rate does so; a pipe at rest sheds at the middle frequency."""
     at = sample(3)
     part, state = behind(at), at.state(2, size=0.0, t=0.0)
     rest = State(0.0, 0.0 * state.u, 0.0 * state.v, 0.0 * state.a)
@@ -252,7 +252,7 @@ def scene(**more: Any) -> Mapping:
 
 
 def forces(**more: Any) -> dict[str, law.Shedding]:
-    """Of the parts of the dynamic stage, by name."""
+    """Parts of the dynamic stage, by name."""
     assembly = built(scene(**more))
     parts: dict[str, Any] = {part.name: part for part in assembly.begin(assembly.scene.stages[1]).parts}
     return {name: parts[name].kernel_data().shed for name in (CROSS, IN_LINE) if name in parts}

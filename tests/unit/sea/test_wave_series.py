@@ -140,7 +140,7 @@ def test_stations_of_a_riser_share_few_places() -> None:
 
 
 def test_long_and_short_waves_of_any_unit_of_length() -> None:
-    """The same waves in metres and in millionths of them."""
+    """Waves in metres are those in millionths of metres."""
     here, tiny = (regular(0.02 * unit, 6.0, 0.3, 0.2, G * unit, 30.0 * unit) for unit in (1.0, 1e-6))
     x = points(30.0, 50.0, 14) - [0.0, 0.0, LEVEL]
     first = Sea(0.0, [linear_waves(here, 30.0, 0.0)])(2.0, x)

@@ -312,7 +312,7 @@ def test_what_a_law_does_wrong_is_told_in_one_line(own: Write, name: str) -> Non
 
 
 def test_a_wrong_tangent_is_told_with_depth_and_strain_increment(own: Write) -> None:
-    """Of clay whose tangent is elastic where it flows."""
+    """A clay whose tangent is elastic where it flows."""
     found = "found = self.formula.update(increment, history, dt)"
     text = CLAY.replace("return self", f"{found}\n        return found._replace(tangent=self.formula._elastic) #")
     law = own(text, su=1e3, su_gradient=0.0, E_over_su=300.0)

@@ -37,7 +37,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def kernels_in(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As far as the compliance is concerned."""
+    """Stand-in for the compiler's environment, as far as the compliance asks for it."""
     environment = SimpleNamespace(FOLDER=folder, NAME=compiled.NAME, tell=compiled.tell)
     monkeypatch.setattr(kept_compliance, "compiled", environment)
 

@@ -61,7 +61,7 @@ def test_a_body_force_weighs_what_it_says(kind: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("inertia", [False, True])
 @pytest.mark.parametrize("kind", ["hex", "tet"])
 def test_the_tangent_is_the_slope_of_the_residual(kind: str, inertia: bool, tmp_path: Path) -> None:
-    """Of displacement and velocity, on cells and boundaries, of rules of one point and others side by side."""
+    """Tangents by displacement and velocity, on cells and boundaries, of rules of one point and others side by side."""
     soil = soil_on(distorted(small_block(kind)), inertia)
     part, size = forms(soil, SPRINGS, tmp_path), soil.field.size
     rng, dt = np.random.default_rng(2), 0.5

@@ -24,7 +24,7 @@ REGULAR = np.array([[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0
 
 
 def of_one(corners: Any) -> MeshQuality:
-    """Of a mesh of this cell alone."""
+    """Quality of a mesh of this cell alone."""
     kind: Any = "tet" if len(corners) == 4 else "hex"
     grid = block_grid(MPI.COMM_SELF, BlockSpec((0.0, 1.0), (0.0, 1.0), 1.0, 1.0, 1.0, kind=kind))
     return quality_of(with_cell(grid, np.asarray(corners)))

@@ -50,7 +50,7 @@ def grid_of(kind: str) -> DistributedMesh:
 
 @pytest.mark.parametrize("kind", ["hex", "tet", "sections"])
 def test_mass_is_that_of_the_soil_and_its_moments(kind: str) -> None:
-    """Of bodies that move and turn: integrals of density times 1, x and x²."""
+    """Mass by bodies that move and turn: integrals of density times 1, x and x²."""
     soil = soil_on(grid_of(kind))
     mass, x, axis = SoilInertia(soil, densities(soil)).mass, soil.grid.nodes.points, soil.grid.family.axes[0]
     one, place = np.zeros((2, *x.shape))
@@ -99,7 +99,7 @@ def test_frequencies_of_a_shear_column_converge_as_the_theory_has_it() -> None:
 
 
 def base_dashpots(soil: Soil) -> CellMatrices:
-    """Of the base alone: the column's sides are the planes in which its neighbours would move along."""
+    """Dashpots of the base alone: the column's sides are the planes in which its neighbours would move along."""
     part, facets = SoilBoundary(soil, densities(soil)), outer_facets(soil.grid, soil.cells.nodes)
     damping = part.damping.matrices
     bottom = [number for number, facet in enumerate(damping) if on_base(soil, part.damping.dofs[number], facet)]

@@ -99,7 +99,7 @@ def test_scene_with_a_new_soil_law() -> None:
 
 @pytest.mark.usefixtures("other_elastic")
 def test_run_on_a_new_soil_law() -> None:
-    """The same as on the law whose formula it has. Elastic soil is never computed by half."""
+    """A run is the same as on the law whose formula it has. Elastic soil is never computed by half."""
     toy = on_soil(ELASTIC | {"kind": "toy"})
     toy["soil"]["symmetry"] = "whole"
     known, new = at_rest(on_soil(ELASTIC, "whole")), at_rest(toy)

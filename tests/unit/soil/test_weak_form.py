@@ -111,7 +111,7 @@ def test_kernels_give_the_same_bits_wherever_arrays_lie(family: Family) -> None:
 
 
 def shifted(values: Array, places: int) -> Array:
-    """The same numbers, so many places of eight bytes behind a multiple of 64."""
+    """The numbers, moved so many places of eight bytes behind a multiple of 64."""
     room = np.empty(values.size + 16)
     first = (-room.ctypes.data // 8) % 8 + places
     out = room[first : first + values.size].reshape(values.shape)

@@ -47,7 +47,7 @@ class Stored:
 
 
 def solver(entries: Array, chain: int, border: int) -> tuple[BorderedBand, Stored]:
-    """Of the first rows."""
+    """Solver of the first rows."""
     matrix: Any = Stored(entries)
     return BorderedBand(matrix, np.arange(chain), np.arange(chain, chain + border)), matrix
 
@@ -74,7 +74,7 @@ def test_it_solves(chain: int, border: int, band: int, touched: slice) -> None:
 
 
 def test_the_band_alone_is_solved() -> None:
-    """Of a matrix with further rows, which don't count."""
+    """The matrix has further rows, which don't count."""
     entries, load = matrix(30, 7, 3, slice(10, 15)), np.random.default_rng(8).normal(size=30)
     factors, _ = solver(entries, 30, 0)
     expected = np.linalg.solve(entries[:30, :30], load)
@@ -163,7 +163,7 @@ print(*solver.x.getArray(readonly=True))
     [("", 1), pytest.param("del solver", 1, marks=pytest.mark.verify), ("solver.snes.destroy()", 0)],
 )
 def test_python_ends_well_with_solvers_left_over(end: str, in_use: int) -> None:
-    """Of those destroyed, nothing is kept."""
+    """Nothing is kept of solvers that were destroyed."""
     counted = f"{end}\nprint(len(BandSolver.in_use))"
     done = subprocess.run([sys.executable, "-c", LEFT_OVER % counted], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout.split()) == (0, ["3.0", "3.0", "3.0", str(in_use)]), done.stderr

@@ -68,7 +68,7 @@ def hinged(x: float, z: float, given: Mapping, **pipe: float) -> Mapping:
 
 @pytest.mark.parametrize("axis", [(0.0, 0.0, -1.0), (0.36, 0.48, -0.8), (0.6, 0.64, 0.48)])
 def test_a_straight_line_turns_about_itself_as_its_sections_spin(axis: tuple[float, float, float]) -> None:
-    """Of its three turns about a ball two are left where the spin of that end is prescribed, and none comes twice."""
+    """Two of its three turns about a ball are free where the spin of that end is prescribed, and none comes twice."""
     shape: Mapping = {"riser": {"unstressed": {"points": [[0.0, 0.0, 0.0], [12.0 * a for a in axis]]}}, "gravity": 9.81}
     pipe: Mapping = {"EA": 1e8, "EI": 1e3, "GJ": 1e3, "submerged_weight": 500.0}
     ends: Mapping = {"start": prescribed(0.0, 0.0, 0.0), "end": "free"}

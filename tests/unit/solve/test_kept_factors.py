@@ -29,7 +29,7 @@ class Solver:
         self.kept.attach(self._ksp, levers)
 
     def solution(self, rows: Array, b: Array) -> Array:
-        """Of A x = b, A with the pattern of dense rows (n, n) and their values."""
+        """Solution of A x = b, A with the pattern of dense rows (n, n) and their values."""
         matrix = sparse(rows)
         self._ksp.setOperators(matrix)
         x, right = matrix.createVecs()

@@ -169,7 +169,7 @@ def at_first_step(case: str) -> tuple[LineSystem, System]:
 
 @pytest.mark.parametrize("case", MARKED)
 def test_the_tangent_is_the_slope_of_the_residual(case: str) -> None:
-    """Of riser and border, and it is another one without contact's share."""
+    """The tangent of riser and border; it is another one without contact's share."""
     riser, system = at_first_step(case)
     (line,), (beside, _) = riser.lines, riser.couplings
     assert isinstance(beside, SoilBorder)

@@ -114,7 +114,9 @@ for stage in range(2):
 
 @pytest.mark.parametrize("linear", ["direct", pytest.param("kept", marks=pytest.mark.verify)])
 def test_stages_end_on_all_ranks_though_one_holds_on_to_frames(tmp_path: Path, linear: str) -> None:
-    """As it does where it alone has compiled a kernel: factors go, and PETSc's copy of the communicator stays."""
+    """A rank holds on to frames where it alone has compiled a kernel: factors go, and PETSc's copy of the communicator
+    stays.
+    """
     script = tmp_path / "held.py"
     script.write_text(HELD)
     done = mpirun(2, str(script), linear)

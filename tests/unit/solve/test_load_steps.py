@@ -23,7 +23,7 @@ CLAY: Mapping = {"kind": "von-mises", "su": 4.0e3, "E_over_su": 300.0, "nu": 0.4
 
 
 def steps(law: Mapping | None, pressed: float, up: float = 0.0, asked: int = 1) -> int:
-    """Of the second stage, in which a pipe that touches is pressed in by so much, or lifted [m]."""
+    """Load steps of the second stage, in which a pipe that touches is pressed in by so much, or lifted [m]."""
     scene = slice_of_soil(2)
     first = scene["stages"][0]
     ends = {end: [*at[:2], 0.5 * D - pressed + up] for end, at in first["move"].items()}

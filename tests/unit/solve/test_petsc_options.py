@@ -132,7 +132,7 @@ def test_the_tangent_is_that_of_the_residual_by_petsc_s_own_test(capfd: pytest.C
 
 
 def test_a_linear_solver_of_petsc_takes_the_place_of_the_project_s(capfd: pytest.CaptureFixture[str]) -> None:
-    """As exact as Newton's method asks for."""
+    """PETSc's solver is as exact as Newton's method asks for."""
     solution = solved(ksp_type="gmres", pc_type="none", ksp_converged_reason=True)
     printed = capfd.readouterr().out.splitlines()
     assert len(printed) == solution.iterations == solved().iterations

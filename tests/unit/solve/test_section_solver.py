@@ -87,7 +87,7 @@ def test_a_section_whose_entries_change_gets_new_factors_and_the_others_keep_the
 
 
 def test_contact_that_changes_keeps_all_factors() -> None:
-    """As long as it touches the same rows."""
+    """Factors are kept as long as contact touches the same rows."""
     entries = matrix()
     solver = Solver(entries)
     solver.solution(entries, LOAD)

@@ -120,7 +120,7 @@ def test_what_comes_to_touch_within_a_step_gets_its_place_at_once() -> None:
 
 
 def test_forces_in_play_are_the_largest_of_reactions_inertia_and_contact() -> None:
-    """Of four masses the first is held; what acts on the others is no reaction."""
+    """The first of four masses is held; what acts on the others is no reaction."""
     chain = Chain(np.arange(4.0), prescribed=True)
     system = System(MPI.COMM_SELF, Model([chain], [Springs(chain, 1.0, 100.0)]), Timer.new())
     try:

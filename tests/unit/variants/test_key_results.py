@@ -19,7 +19,7 @@ LENGTH = math.dist((0.0, 0.0, 0.15), Catenary(32.0, 30.0).record(ARC).position[-
 
 
 def summary(kind: str, *parameters: float, facts: RunFacts = FACTS, **soil: Any) -> Any:
-    """Of one stage that went through catenaries of these parameters [m], as read from summary.json."""
+    """Summary of one stage that went through catenaries of these parameters [m], as read from summary.json."""
     whole = Summary(facts)
     stage = whole.begin_stage("lay", kind)
     for t, a in enumerate(parameters):

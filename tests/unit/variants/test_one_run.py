@@ -64,7 +64,7 @@ def test_what_is_done_is_not_done_again(tmp_path: Path, fake: Fake) -> None:
 
 
 def test_the_first_of_two_attempts_that_finish_stays(tmp_path: Path, fake: Fake) -> None:
-    """As where a worker that was given up is alive all the same; one that failed gives way."""
+    """A worker that was given up may be alive all the same; an attempt that failed gives way."""
     run_variant(a_task(tmp_path))
     late, failed = attempt(tmp_path, "a", SMALL), attempt(tmp_path, "a", SMALL)
     (late / "late").touch()
