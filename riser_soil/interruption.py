@@ -40,7 +40,7 @@ class _Pending:
         raise self.latest
 
     def untell(self) -> None:
-        """What was raised has got lost: it is told at the end of the next block that no signal interrupts."""
+        """An interruption that got lost is raised again at the end of the next block that no signal interrupts."""
         if self.latest is not None:
             self.number, self.latest = self.latest.number, None
 

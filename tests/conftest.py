@@ -49,6 +49,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_sessionfinish() -> None:
-    """What is measured of a worker is written before it ends, which it may do without notice."""
+    """Coverage of a worker is written before it ends, which it may do without notice."""
     if (measured := sys.modules.get("coverage")) and (running := measured.Coverage.current()):
         running.save()

@@ -97,7 +97,7 @@ def asked(
 
 
 def share_of_claims(scenes: Iterable[AskedScene]) -> float:
-    """How many of those that do not tell otherwise truly reach the accuracy."""
+    """Number of scenes that claim to reach the accuracy and truly do."""
     claimed = [each.outcome for each in scenes if each.outcome is not Outcome.REPORTED]
     return claimed.count(Outcome.REACHED) / len(claimed)
 
@@ -119,7 +119,7 @@ def costs(scenes: Iterable[AskedScene]) -> list[HandCost]:
 
 
 def _run(mapping: Mapping, folder: Path) -> tuple[str, float]:
-    """What it says where it does not reach the accuracy, and processor seconds."""
+    """Message of a run that does not reach the accuracy, and processor seconds."""
     said = ""
 
     def to_accuracy() -> None:

@@ -102,7 +102,7 @@ def _limit_processor() -> None:
 
 
 def write(names: list[str]) -> None:
-    """What scenes reach anew; that of the others stays."""
+    """Write what scenes reach; results of other scenes are kept."""
     for name in names:
         known = read() | {name: in_time(name)}
         text = ",\n".join(f"{json.dumps(each)}: {json.dumps(known[each])}" for each in SCENES if each in known)

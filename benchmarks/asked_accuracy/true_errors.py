@@ -47,7 +47,7 @@ class TrueErrors:
 
 
 def accuracy_of(scene: Mapping[str, Any]) -> float:
-    """What is asked of a scene of the calibration."""
+    """Accuracy that a scene of the calibration asks for."""
     return ON_SOIL if "soil" in scene else ACCURACY
 
 

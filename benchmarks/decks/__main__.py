@@ -29,7 +29,7 @@ WITHOUT_TENSION = "its tension is 0 there"
 
 
 def verdict(deck: Found) -> str:
-    """What becomes of it in a few words."""
+    """A deck's outcome in a few words."""
     if deck.outcome != "scene":
         return deck.outcome
     if deck.difference is None:

@@ -163,7 +163,7 @@ def _output(place: Path) -> str:
 
 
 def _reason(ending: Ending) -> str:
-    """What it said last, the folder of files left out."""
+    """The last line of its output, without the files' folder."""
     rows = [row.strip() for row in ending.output.splitlines() if row.strip() and "not carried over:" not in row]
     rows = [re.sub(r"\S*/(?=[^/\s]+:)", "", row) for row in rows]
     return rows[-1] if rows and ending.word == "traceback" else " ".join(rows)[:600]

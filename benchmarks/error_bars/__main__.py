@@ -21,7 +21,7 @@ Known = Mapping[str, references.Reference]
 
 
 def judged(scenes: Mapping[str, SceneMapping], known: Known) -> list[JudgedScene]:
-    """Those that can be computed."""
+    """Judged bars of the scenes that can be computed."""
     results = []
     for name, scene in scenes.items():
         try:

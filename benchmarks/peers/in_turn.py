@@ -42,7 +42,7 @@ def file_of(folder: Path, case: str, program: Program, elements: int, time_step:
 
 
 def measure(cases: Sequence[str], folder: Path) -> None:
-    """What is not yet in the folder; repeated runs keep the least time."""
+    """Measure the runs that are not yet in the folder; repeated runs keep the least time."""
     with ExitStack() as stack:
         workers = {program: stack.enter_context(_worker(number)) for number, program in enumerate(PROGRAMS)}
         for case in cases:

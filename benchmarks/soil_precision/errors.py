@@ -100,7 +100,7 @@ def csv_of(rows: Sequence[Row]) -> str:
 
 
 def rows_of(text: str) -> list[Row]:
-    """What `csv_of` has written."""
+    """Rows from the text that `csv_of` writes."""
     return [
         Row(scene, method, int(n), float(seconds), figure, norm, float(value or "nan"), float(error))
         for scene, method, n, seconds, figure, norm, value, error in list(csv.reader(io.StringIO(text)))[1:]

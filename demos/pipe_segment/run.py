@@ -119,7 +119,7 @@ def calibrated(results: Path, name: str, w: Array, V: Array, wanted: tuple[str, 
 
 
 def fits_page(fits: dict[str, Fit]) -> str:
-    """What was found, and what had made the curves."""
+    """Table of fitted constants beside those that made the curves."""
     truths = {"the model's own": TRUTH, "closed form, smooth": {"soil.law.su": CLOSED_FORM_SU}}
     rows = []
     for curve, fit in fits.items():

@@ -42,7 +42,7 @@ def main(folder: Path, page: bool) -> None:
 
 
 def figures(done: Run) -> str:
-    """What the stages leave: at the end of the static one, the range over the dynamic one."""
+    """Figures of the stages: at the end of the static one, the range over the dynamic one."""
     static, motion = done.summary["stages"]
     ranges, rows = motion["extremes"], []
     for name, key, scale, digits in (

@@ -58,7 +58,7 @@ def _list(sentences: Iterable[str]) -> list[str]:
 
 
 def _image(study: Study, content: Mapping[str, Any]) -> str:
-    """Where no quantity can be judged, there are no errors to plot."""
+    """Plot of the errors as a picture; none where no quantity can be judged."""
     if not any(each["judged"] for each in content["quantities"].values()):
         return ""
     svg = base64.b64encode(drawn_work_precision(plotted(study, content)).encode()).decode()

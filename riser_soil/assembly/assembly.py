@@ -98,7 +98,7 @@ class Assembly:
 
     @property
     def lasting_parts(self) -> list[Part]:
-        """Those that act in all stages."""
+        """Parts that act in all stages."""
         parts = [part for own in self.lines.values() for part in own.parts]
         hung = [] if self.hung is None else self.hung.lasting
         return [*parts, *self.contacts, *self.frictions, *([] if self.soil is None else self.soil.parts), *hung]

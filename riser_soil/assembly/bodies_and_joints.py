@@ -101,7 +101,7 @@ class Hung:
 
 
 def _drag(sea: SeaAssembly, stage: Stage, body: MovingBody, given: BodyProperties) -> BodyDrag | None:
-    """What the water does to a body beyond carrying it, where it does anything in a stage."""
+    """Drag and added mass of a body in a stage; None where the water does nothing beyond carrying it."""
     water = sea.water
     if not isinstance(stage, DynamicStage) and not sea.moves_in(stage):
         return None

@@ -57,7 +57,7 @@ class _Body:
 
     @property
     def scales(self) -> Scales:
-        """Those of a line of its width that has its weight."""
+        """Scales of a line with the body's width and weight."""
         return Scales(self.weight.load / self.width, self.width, 0.0)
 
 

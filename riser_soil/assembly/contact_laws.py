@@ -29,7 +29,7 @@ def stiffnesses(scene: Scene, settings: ContactScene, scales: Scales) -> dict[st
     over_soil = STIFFNESS_OVER_SOIL if settings.at_nodes else SURFACE_STIFFNESS_OVER_SOIL
 
     def penalty(E: float | None) -> float:
-        """Where the pipe must not enter; E: Young's modulus [Pa], None of a rigid ground."""
+        """Stiffness of a penalty against penetration; E: Young's modulus [Pa], None of a rigid ground."""
         if settings.stiffness != "auto":
             return float(settings.stiffness)
         return automatic_stiffness(E, scales.weight, scales.diameter, over_soil)

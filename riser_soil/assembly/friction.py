@@ -65,7 +65,7 @@ def soil_friction_of(
 def _soil_adhesion(
     scene: Scene, soil: SoilScene, share: float | None, volume: IntArray, scales: Scales
 ) -> SoilAdhesion | None:
-    """What clay holds the pipe by at most; None where nothing yields."""
+    """Adhesion of clay, the limit of friction; None where nothing yields."""
     if share is None or soil.is_linear:
         return None
     level, strength = scene.seabed_level, strength_of(soil, SHALLOWEST * scales.diameter)

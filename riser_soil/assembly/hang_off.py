@@ -68,7 +68,7 @@ class HungEnd:
 
     @property
     def segments(self) -> tuple[Segment, ...]:
-        """Those of the line as it is given."""
+        """Segments of the line as it is given."""
         return risers(self.scene)[self.line].segments
 
     @property
@@ -96,13 +96,13 @@ class HungEnd:
 
     @property
     def request(self) -> str:
-        """What is asked for, in words."""
+        """The request of the hang-off, in words."""
         what = "a hang-off angle" if self.asked.angle is not None else "a top tension"
         return f"{self.line + ': ' if self.line else ''}{what} of {self.asked.asked:g} {self.asked.unit}"
 
 
 def in_words(hung: HungEnd, value: float) -> str:
-    """What is asked for, and the value [m] with its place, in words."""
+    """A hang-off's request, and the value [m] with its place, in words."""
     if hung.asked.by == "length":
         return f"{hung.request}: a length of {value:.6g} m of segments.{hung.segment}"
     name = hung.name if hung.asked.by == "layback" else hung.other

@@ -124,7 +124,7 @@ class LevelBed:
         return ShapeInPlane(place, np.arctan(slope), cable.hangs)
 
     def _touchdowns(self, cable: ShapeInPlane, H: float) -> Iterator[Touchdown]:
-        """Where an end is pulled up from its place on the ground there is none."""
+        """Touchdown points of a cable; none where an end is pulled up from its place on the ground."""
         for e in np.flatnonzero(cable.hangs[1:] != cable.hangs[:-1]):
             hung, weight = e + int(cable.hangs[e + 1]), float(self.elements.weight[e])
             if weight <= 0.0:  # it floats up from there

@@ -112,12 +112,12 @@ class LineAssembly:
 
     @cached_property
     def end_places(self) -> list[EndPlaces]:
-        """Where its ends are, stage by stage."""
+        """Places of the line's ends, stage by stage."""
         return list(end_places(self.scene, self.sea))
 
     @cached_property
     def touchdown(self) -> TouchdownForecast | None:
-        """Where it touches down by statics as a cable; None where no cable between its ends comes down."""
+        """Touchdown point by the line's statics as a cable; None where no cable between its ends comes down."""
         return forecast(self.scene, self.elements, self.end_places)
 
     @cached_property
@@ -184,7 +184,7 @@ class LineAssembly:
         return MovedEnds(end=end.position)
 
     def own_stage(self, stage: Stage) -> Stage:
-        """What a stage of the whole scene is for this line."""
+        """The stage of this line within a stage of the whole scene."""
         return next(own for own in self.scene.stages if own.name == stage.name)
 
     def begin(self, stage: Stage) -> list[Part]:

@@ -122,7 +122,7 @@ def cycle_count(scene: Scene, stage: Stage) -> float:
 
 
 def _turns(values: Array) -> Array:
-    """How often each column (n, m) turns back."""
+    """Number of times that each column (n, m) turns back."""
     ways = (np.sign(np.diff(column)) for column in values.T)
     return np.array([np.count_nonzero(np.diff(way[way != 0.0])) for way in ways])
 

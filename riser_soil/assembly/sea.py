@@ -96,7 +96,7 @@ def sea_of(scene: Scene) -> SeaAssembly | None:
 
 
 def wave_clock(scene: Scene, stage: Stage) -> float:
-    """What the waves' clock shows when a stage begins [s]: it runs through the dynamic stages."""
+    """The waves' clock at the beginning of a stage [s]: it runs through the dynamic stages."""
     before = takewhile(lambda other: other.name != stage.name, scene.stages)
     return sum(other.duration for other in before if isinstance(other, DynamicStage))
 

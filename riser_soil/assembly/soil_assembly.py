@@ -64,7 +64,7 @@ class SoilAssembly:
 
     @property
     def renewal(self) -> list[Part]:
-        """What renews the mesh, if anything does."""
+        """The renewal of the mesh; None where it is not renewed."""
         return [] if self.mesh_renewal is None else [self.mesh_renewal]
 
     def recovered(self) -> Soil:

@@ -53,7 +53,7 @@ def with_sizes(scene: Scene, soil: SoilScene) -> SoilScene:
 
 @dataclass(frozen=True, eq=False)
 class SoilSizes:
-    """What follows from a scene for its block of soil and the cells in it."""
+    """Sizes of a scene's block of soil and of the cells in it."""
 
     scene: Scene
     soil: SoilScene

@@ -92,7 +92,7 @@ def _title(assembly: Assembly) -> str:
 
 
 def _model(known: Inventory) -> Iterator[str]:
-    """What the model has, and in short what it hasn't; why, where the scene doesn't say so."""
+    """Lines on what the model has and lacks, with the reason where the scene does not give it."""
     yield "model: " + ", ".join(WORDS.get(name, name) for name in known.built)
     absent = known.left_out
     without = [WORDS.get(name, name) for name in absent if name not in (*WITH_REASON, *WITHIN_SOIL)]

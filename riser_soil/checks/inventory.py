@@ -76,7 +76,7 @@ def _accounts(given: tuple[str, ...], names: set[str]) -> list[str]:
 
 
 def _results_left_out(assembly: Assembly) -> dict[str, str]:
-    """What is no part, and why it is not computed."""
+    """Results that are not computed, with the reason."""
     left_out = {} if assembly.scene.code_check else {"code check": "the scene has no code_check"}
     if assembly.soil is not None and assembly.soil.whole.grid.mirror is not None:
         left_out["half of the soil"] = "by symmetry"

@@ -34,7 +34,7 @@ class SoilEdge(NamedTuple):
 
 
 def edge_report(riser: LineAssembly) -> Iterator[str]:
-    """What `check` tells of the edge."""
+    """Lines of `check` about the soil's edge."""
     edge = soil_edge(riser)
     if edge is None:
         return

@@ -57,7 +57,7 @@ class LineChecks:
 
     @property
     def facts(self) -> tuple[CodeCheckFacts, ...]:
-        """What is checked, in the order of `code_largest`."""
+        """The checks made, in the order of `code_largest`."""
         return tuple(
             CodeCheckFacts(
                 line_type=part.line_type,

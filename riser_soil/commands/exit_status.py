@@ -72,7 +72,7 @@ def expected_errors() -> Iterator[None]:
 
 
 def _way_to(module: str) -> str:
-    """What brings a package that may be absent; "" for those that are always there."""
+    """The way to install a package that may be absent; "" for those that are always there."""
     package = module.partition(".")[0]
     if package in ELSEWHERE:
         return "Debian, conda-forge or the project's Docker image bring it (docs/running.md)"

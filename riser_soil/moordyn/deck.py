@@ -118,7 +118,7 @@ def read_deck(file: Path) -> Deck:
 
 
 def _blocks(lines: list[str]) -> list[_Block]:
-    """What is before the first header, then a block for each."""
+    """Rows before the first header, then those below each header."""
     blocks = [_Block(0, "")]
     for number, line in enumerate(lines, start=1):
         if "---" in line:

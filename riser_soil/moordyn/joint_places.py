@@ -53,7 +53,7 @@ class Cable:
 
     @property
     def load(self) -> float:
-        """What it weighs [N], less than 0 where it floats."""
+        """Its weight in water [N], negative where it floats."""
         return float(self.weight @ np.diff(self.arc) + self.points[:, 1].sum())
 
     def pulls(self, start: Array, end: Array) -> Array:

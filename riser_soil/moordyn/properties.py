@@ -107,7 +107,7 @@ def _about_rod(row: DeckRow) -> Iterator[str]:
 
 
 def about_ends(row: DeckRow) -> Iterator[str]:
-    """What the ends of a rod type have, where that is something."""
+    """Remarks on properties of a rod type's ends."""
     for column in ("CdEnd", "CaEnd"):
         if column in row and as_number(row[column]) != 0.0:
             yield f"{column} {row[column]} of {row['Name']}: drag and added mass of a rod's ends"

@@ -69,7 +69,7 @@ def length_of(deck: Deck, piece: Piece) -> float:
 
 
 def about_free(deck: Deck, node: Node) -> list[Remark]:
-    """What a free node has that the scene does not."""
+    """Remarks on what a free node has and the scene does not."""
     if node.section == "rods" and not has_length(deck, node.row):
         return [(node.row.line, about) for about in about_ends(type_of(deck, node.row))]
     if node.section != "bodies":

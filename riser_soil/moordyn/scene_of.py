@@ -40,7 +40,7 @@ def scene_of(deck: Deck, line: str | None = None) -> ImportedScene:
 
 
 def head_of(deck: Deck, options: Options, types: dict[str, Any]) -> dict[str, Any]:
-    """What a scene begins with."""
+    """The first lines of a scene's file."""
     data: dict[str, Any] = {"title": deck.title.strip("- ") or deck.name, "gravity": options["g"]}
     if options["rho"] > 0.0:
         return data | {"water": {"density": options["rho"], "surface_level": 0.0}, "line_types": types}

@@ -240,7 +240,7 @@ def _three(values: list[float]) -> list[float]:
 
 
 def _turning(values: list[float]) -> list[float]:
-    """Those for rotations: MoorDyn takes those along the axes where a deck has no others."""
+    """Constants for rotations: MoorDyn takes those along the axes where a deck has no others."""
     return {1: values * 3, 2: values[1:] * 3, 3: values, 6: values[3:]}[len(values)]
 
 
@@ -271,7 +271,7 @@ def _loads(
 
 
 def _about_nodes(deck: Deck, ends: Ends, forces: dict[str, list[SteadyForce]]) -> Iterator[Remark]:
-    """What is lost at nodes that lines share, and forces on what is held."""
+    """Remarks on what is lost at nodes that lines share, and on forces at fixed nodes."""
     on_bodies = {f"body {row['ID']}" for row in deck.of("bodies") if kind(deck, "bodies", row)[0] == FREE}
     for node, at_it in ends.values():
         if _is_shared(deck, node, at_it):

@@ -86,7 +86,7 @@ def pieces(item: Item, length: float) -> list[tuple[float, PipeOfType]]:
 
 
 def _cuts(a: float, b: float, pipe: Callable[[float], PipeOfType]) -> Iterator[float]:
-    """Where the steps of a straight taper from a to b begin."""
+    """Beginnings of the steps of a straight taper from a to b."""
     first, last = _bending(pipe(a)), _bending(pipe(b))
     if not (first > 0.0 and last > 0.0):
         pipe(a).item.refuse("ID", f"is not less than OD everywhere from {a:g} to {b:g} m; correct one of the tables")

@@ -157,7 +157,7 @@ def _elements(row: Item, length: float, whole: float) -> dict[str, Any]:
 
 
 def _contents(line: Item) -> dict[str, Any] | None:
-    """What fills the line; None where it is empty."""
+    """The line's contents; None where it is empty."""
     if line.choice("ContentsMethod", "Uniform") != "uniform":
         line.refuse("ContentsMethod", f"is {line.word('ContentsMethod')}; only Uniform can be carried over")
         return None

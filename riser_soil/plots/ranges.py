@@ -185,7 +185,7 @@ def _mark_touchdown(axes: Axes, stage: StageRecords) -> None:
 
 
 def _span(arc: Array, values: Array) -> tuple[float, float]:
-    """What is shown of the arc length [m]: all of it, or where the quantity acts if that is less than half."""
+    """Range of the arc length [m] that is shown: all of it, or where the quantity acts if that is less than half."""
     acts = np.flatnonzero((np.nan_to_num(values) != 0.0).any(axis=0))
     if len(acts) == 0 or np.ptp(arc[acts]) > 0.5 * np.ptp(arc):
         return float(arc[0]), float(arc[-1])

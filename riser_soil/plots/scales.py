@@ -49,6 +49,6 @@ def shown(units: str) -> tuple[str, float]:
 
 
 def axis_words(text: str, units: str) -> tuple[str, float]:
-    """What an axis says of a quantity, and the factor that makes it so."""
+    """An axis' label of a quantity, and the factor to its unit."""
     unit, factor = shown(units)
     return f"{text} [{unit}]", factor

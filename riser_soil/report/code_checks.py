@@ -79,7 +79,7 @@ def _blocks(sources: Sources) -> Iterator[Block]:
 
 
 def _input(sources: Sources) -> Iterator[Block]:
-    """What the checks of the reference case are made with."""
+    """Input of the checks of the reference case."""
     scene = reference_of(sources).scene
     for check in () if scene is None else scene.code_check:
         names = f" of {', '.join(check.line_types)}" if check.line_types else ""

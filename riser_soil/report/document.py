@@ -153,7 +153,7 @@ class ReportDocument:
 
 
 def ref(key: str) -> str:
-    """What a paragraph writes in the place of "Table 3" or "Figure 3"."""
+    """A reference in a paragraph: stands for "Table 3" or "Figure 3"."""
     return f"\u27e8{key}\u27e9"
 
 
@@ -179,7 +179,7 @@ def name_of(item: TableBlock | PictureBlock) -> str:
 
 
 def headings(items: Sequence[Item]) -> list[Heading]:
-    """What the list of contents has."""
+    """Headings for the list of contents."""
     return [item for item in items if isinstance(item, Heading) and item.level <= 2]
 
 

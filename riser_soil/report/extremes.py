@@ -135,7 +135,7 @@ def _components(value: Array, scale: float, least: float) -> str:
 
 
 def _instant(t: Array) -> str:
-    """That of a number; a vector's components have one each."""
+    """Time and place of a number's extreme; a vector's components have one each."""
     return NOTHING if t.ndim else number(float(t), 4)
 
 
@@ -148,7 +148,7 @@ def error_bars(summary: Mapping[str, Any], stage: str) -> dict[tuple[str, str], 
 
 
 def key_results_table(summary: Mapping[str, Any]) -> ReportTable:
-    """What is read first: key results stage by stage, and their error bars if there are any."""
+    """Key results, the first table to read: key results stage by stage, and their error bars if there are any."""
     bars = {f"{each['stage']}: {each['name']}": each for each in value_at(summary, ("error_bars", "quantities")) or []}
     sources = list(dict.fromkeys(source for each in bars.values() for source in each["by_source"]))
     rows = []

@@ -95,7 +95,7 @@ def kinds() -> list[ResultKind]:
 
 
 def _words(figure: Figure) -> str:
-    """What a utilisation is called: by the code check's row on the screen where it is one."""
+    """Name of a utilisation: by the code check's row on the screen where it is one."""
     if figure.name in _USES:
         return _USES[figure.name]
     row = figure.row.words if figure.row is not None else figure.name.replace("_", " ")
@@ -113,7 +113,7 @@ def results_of(case: LoadCase) -> tuple[Result, ...]:
 
 
 def of_stage(case: LoadCase, stage: str) -> dict[str, Result]:
-    """Those of one load step by the keys of their kinds."""
+    """Results of one load step by the keys of their kinds."""
     return {result.kind.key: result for result in results_of(case) if result.stage == stage}
 
 

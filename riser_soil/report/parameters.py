@@ -131,7 +131,7 @@ def in_words(description: str) -> tuple[str, str]:
 
 
 def words_of_path(path: str) -> str:
-    """What a path of the scene is called: "normal drag coefficient", else by the language's description."""
+    """Name of a path of the scene: "normal drag coefficient", else by the language's description."""
     key = path.rpartition(".")[2]
     for name, words, _, _ in PROPERTIES:
         if path.startswith("line_types.") and path.split(".", 2)[2] == name:

@@ -79,7 +79,7 @@ def document_of(sources: Sources) -> ReportDocument:
 
 
 def writer_of(file: Path) -> Callable[[ReportDocument, Path, Began], None]:
-    """What writes a file with this ending; ResultsError where that is of no format, or its package is not there."""
+    """The writer of files with this ending; ResultsError where that is of no format, or its package is not there."""
     if file.suffix.lower() not in WRITERS:
         raise ResultsError(f"{file}: a report is one of {', '.join(WRITERS)}; change its ending")
     module, function, needed = WRITERS[file.suffix.lower()]

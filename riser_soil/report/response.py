@@ -110,7 +110,7 @@ def _characteristic(sources: Sources) -> Iterator[Block]:
 
 
 def _characteristic_tables(rows: Sequence[Mapping[str, str]]) -> Iterator[Block]:
-    """Those of riser-soil cases: Gumbel's distribution over the maxima of seeds."""
+    """Tables of riser-soil cases: Gumbel's distribution over the maxima of seeds."""
     table = []
     for row in rows:
         if not _counts(row):
@@ -171,7 +171,7 @@ def _over_seeds(sources: Sources) -> Iterator[Block]:
 
 
 def _statistics(rows: Sequence[Mapping[str, Any]]) -> Iterator[Block]:
-    """Those of riser-soil statistics: most probable extremes at places along the line."""
+    """Tables of riser-soil statistics: most probable extremes at places along the line."""
     table = []
     for row in rows:
         unit, scale = unit_of(row["unit"])

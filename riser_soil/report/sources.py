@@ -75,7 +75,7 @@ class LoadCase:
 
     @property
     def group(self) -> tuple[tuple[str, str], ...]:
-        """What it shares with cases of its folder that differ in their seed alone."""
+        """Key shared with the cases of its folder that differ in their seed alone."""
         return tuple((name, value) for name, value in self.axes.items() if not is_seed(name))
 
     @property

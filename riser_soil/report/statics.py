@@ -75,7 +75,7 @@ def _alike(one: Mapping[str, Result], other: Mapping[str, Result]) -> bool:
 
 
 def _common(cases: Sequence[LoadCase], count: int) -> str:
-    """What cases have in common: the values of axes that are the same for all of them; the name of one alone."""
+    """Values of the axes that all cases share; of a single case, its name."""
     first = cases[0]
     if len(cases) == 1:
         return first.name

@@ -68,7 +68,7 @@ def _fatigue(sources: Sources) -> Iterator[list[str]]:
 
 
 def _verdict(sources: Sources, best: dict[str, Result]) -> Iterator[Block]:
-    """What is exceeded, and what was not checked."""
+    """Sentence on limits that are exceeded and checks that were not made."""
     beyond = [f"{each.kind.words}, {each.text} in {each.case.name}" for each in uses(best) if each.value > 1.0]
     results = fatigue_of(sources)
     if results is not None and (results.utilisation or 0.0) > 1.0:

@@ -62,7 +62,7 @@ class LinePart:
 
 
 def acting_on(line: MovingNodes, parts: Iterable[Part]) -> list[LinePart]:
-    """Those of the parts that act on this line and say where."""
+    """Parts that act on this line and say where."""
     return [part for part in parts if isinstance(part, LinePart) and part.line is line]
 
 

@@ -113,5 +113,5 @@ class LineTrials:
             self.start, self.end = (t if np.isnan(self.end) else self.end), t
 
     def forget(self) -> None:
-        """What has been found does not hold any more: the parts' kernel data have changed, or others have used them."""
+        """Forget all results: the parts' kernel data have changed, or others have used them."""
         self.now.forget()

@@ -63,6 +63,6 @@ ALIASES: dict[str, str] = {
 
 
 def meant_by(word: str, known: list[str]) -> str:
-    """What to write in the place of a word, by a key that is known here; "" where the word is none of these."""
+    """Replacement of a word by a key that is known here; "" where the word is none of these."""
     written = ALIASES.get(word.lower().replace("-", "_").replace(" ", "_"), "")
     return written if written.partition(":")[0] in known else ""

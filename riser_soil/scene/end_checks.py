@@ -74,7 +74,7 @@ def hang_off_conflicts(scene: Scene) -> Iterator[Problem]:
 
 
 def _wanting_of_hang_off(scene: Scene, name: str) -> Iterator[tuple[str, str]]:
-    """What is wrong, and what to do."""
+    """Problems of a hang-off, with their remedies."""
     other = "end" if name == "start" else "start"
     here, there, first = getattr(scene.line, name), getattr(scene.line, other), scene.stages[0]
     if scene.accuracy is not None:

@@ -36,7 +36,7 @@ class KeyInfo:
 
     @property
     def count(self) -> int | None:
-        """How many items a list of fixed length has here."""
+        """Number of items of a list of fixed length."""
         lengths = [
             len(get_args(t)) for t in self.types if get_origin(t) is tuple and Ellipsis not in get_args(t)
         ]
@@ -121,12 +121,12 @@ class Failure:
 
     @property
     def here(self) -> KeyInfo:
-        """What the language says about the place."""
+        """The scene language's text about the place."""
         return spot(self.location, self.root)
 
     @property
     def around(self) -> KeyInfo:
-        """What the language says about the mapping or list that holds the place."""
+        """The scene language's text about the mapping or list around the place."""
         return spot(self.location[:-1], self.root)
 
     @property

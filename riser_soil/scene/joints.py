@@ -77,6 +77,6 @@ class Joint(BaseModel):
         return self
 
     def first_of(self, point: JointPoint, place: Vector) -> Vector:
-        """Where a point is at first [m], on what begins at a place."""
+        """First place of a point [m] on a body or line that begins at a place."""
         x, y, z = (a + b for a, b in zip(place, point.offset, strict=True))
         return x, y, z

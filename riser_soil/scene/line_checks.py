@@ -245,7 +245,7 @@ def _seabed(scene: Scene) -> Iterator[Problem]:
 
 
 def _for_nothing(scene: Scene) -> Iterator[Problem]:
-    """What no line has anything of."""
+    """Problems of keys that concern none of the lines."""
     if scene.contact is not None and scene.seabed is None and scene.soil is None:
         yield Problem(("contact",), "there is nothing to touch", "add seabed or soil, or leave out contact")
     if scene.soil is None and scene.output.sections != SettlementSections():
@@ -281,7 +281,7 @@ def _jointed(scene: Scene, name: str, end: str) -> bool:
 
 
 def _plane(scene: Scene) -> Iterator[Problem]:
-    """What leaves the plane along x or y that all keep to."""
+    """Problems of what leaves the plane along x or y in which the scene lies."""
     if (across := axis_across(scene)) is None:
         return
     views = by_line(scene)
@@ -325,7 +325,7 @@ def _of_ground(scene: Scene, plane: VerticalPlane) -> Iterator[tuple[Path, bool]
 
 
 def _water(scene: Scene) -> Iterator[Problem]:
-    """What one line has and several have not."""
+    """Problems of keys that a scene of several lines does not have."""
     over_a_grid, water = scene.seabed is not None and scene.seabed.grid is not None, scene.water
     if over_a_grid and water is not None and water.waves is not None and water.depth is None:
         yield Problem(("water", "depth"), "over a grid of heights each line has another", "give it for the waves [m]")

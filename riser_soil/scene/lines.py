@@ -43,7 +43,7 @@ def with_segments(scene: Scene, segments: Mapping[str, tuple[Segment, ...]]) -> 
 
 
 def acts_on(stage: Stage, line: str) -> Any:
-    """What happens to a line in a stage, with move or motion and loads; that of the only one, "", the stage has."""
+    """What acts on a line in a stage, with move or motion and loads; the only line of a scene, "", has its stage's."""
     return stage.lines.get(line, OfLine()) if line else stage
 
 
@@ -55,7 +55,7 @@ def with_acts(stage: Stage, line: str, **changes: Any) -> Stage:
 
 @contextmanager
 def placing(line: str) -> Iterator[None]:
-    """What is found wrong with a line's own scene gets the path that it has in the whole one; "" of the only one."""
+    """Problems of a line's own scene get the path that it has in the whole one; "" of the only one."""
     try:
         yield
     except SceneError as err:
@@ -109,7 +109,7 @@ def _leads_to_hold(scene: Scene, name: str) -> bool:
 
 
 def _without_soil(scene: Scene) -> dict[str, Any]:
-    """What the scene is to a line that does not lie on its soil."""
+    """The scene for a line that does not lie on its soil."""
     contact = scene.contact if scene.seabed is not None else None
     if contact is not None and contact.method == "surface":
         contact = contact.model_copy(update={"method": "auto"})

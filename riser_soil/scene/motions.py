@@ -119,7 +119,7 @@ class Table(GivenByName):
 
     @cached_property
     def columns(self) -> CsvColumns:
-        """What the file holds."""
+        """Contents of the file."""
         known = {**dict.fromkeys("xyz", LENGTH), **dict.fromkeys(("rx", "ry", "rz"), ANGLE)}
         return read_history(self.file, known, required=("x", "y", "z"))
 
@@ -164,7 +164,7 @@ class Vessel(BaseModel):
 
     @cached_property
     def table(self) -> Rao:
-        """What the file holds."""
+        """Contents of the file."""
         return read_capytaine(self.rao) if is_netcdf(self.rao) else read_rao(self.rao)
 
     def axes(self, mode: str) -> Vector:
@@ -206,7 +206,7 @@ class VesselHistory(BaseModel):
 
     @cached_property
     def columns(self) -> CsvColumns:
-        """What the file holds."""
+        """Contents of the file."""
         known = {**dict.fromkeys(TRANSLATIONS, LENGTH), **dict.fromkeys(ROTATIONS, ANGLE)}
         return read_history(self.file, known, required=())
 
@@ -275,7 +275,7 @@ class EndMotion(BaseModel):
 
     @property
     def ways(self) -> dict[str, MotionKind]:
-        """What is given, by its key."""
+        """The given ways of motion by their keys."""
         return {key: way for key, way in self if way is not None}
 
     @property

@@ -27,7 +27,7 @@ class NumberList:
 
     @property
     def count(self) -> int:
-        """How many values the list has, those of its inner lists and these themselves counted."""
+        """Number of values in the list, those of its inner lists and these themselves counted."""
         return self.text.count(",") + self.text.count("[")
 
     def values(self) -> list[Any]:

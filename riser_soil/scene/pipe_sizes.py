@@ -95,7 +95,7 @@ class GivenPipe(NamedTuple):
 
     @property
     def wall(self) -> tuple[float, float]:
-        """Those of the wall that bears stress."""
+        """Sizes of the wall that bears stress."""
         outer, inner = (first_number(self.given, ("wall", key)) for key in ("outer_diameter", "inner_diameter"))
         return outer or self.diameters[0], inner or self.diameters[1]
 

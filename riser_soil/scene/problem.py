@@ -69,7 +69,7 @@ def shown(value: Any, width: int = _WIDTH) -> str:
 
 
 def _first(items: Iterable[str], count: int, width: int) -> str:
-    """Those that have room, and how many there are in all."""
+    """The first items that have room, and how many there are in all."""
     words, rest = list[str](), f"... ({count} in all)"
     for item in items:
         if len(", ".join([*words, item, rest])) > width - 2:

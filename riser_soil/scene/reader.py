@@ -75,7 +75,7 @@ def with_doubts(error: RiserSoilError, document: Document) -> RiserSoilError:
 
 
 def impossible(error: ValidationError) -> SceneError:
-    """What the program makes of a scene, such as elements or cells, breaks a bound of the scene language."""
+    """A model made from a scene, such as elements or cells, breaks a bound of the scene language."""
     first = error.errors(include_url=False)[0]
     made = f"{error.title}: {dotted(first['loc'])}: value {shown(first['input'])}" if first["loc"] else error.title
     return SceneError(f"{made}: {first['msg']}: the scene's numbers lead to this; check the sizes that it follows from")

@@ -116,7 +116,7 @@ class Slug(BaseModel):
 
 
 class Contents(BaseModel):
-    """What fills the pipe."""
+    """Contents of the pipe."""
 
     model_config = FROZEN
 
@@ -224,7 +224,7 @@ class Support(BaseModel):
 
     @classmethod
     def by_joint(cls, position: Vector, rotation: Literal["free", "fixed"]) -> Self:
-        """That of an end which a joint holds at this place at first, and lets go along with what it is joined to."""
+        """The end that a joint holds at this place at first, and that moves with what it is joined to."""
         support = cls(position=position, rotation=rotation)
         support._jointed = True
         return support
@@ -335,7 +335,7 @@ def graded_lengths(length: float, first: float, last: float) -> tuple[float, ...
 
 
 def graded_count(length: float, first: float, last: float) -> int:
-    """How many elements there are; found by bisection, as more of them are always longer together."""
+    """Number of elements; found by bisection, as more of them are always longer together."""
     too_few, enough = 0, max(1, math.ceil(length / min(first, last)) + 1)
     while enough - too_few > 1:
         n = (too_few + enough) // 2

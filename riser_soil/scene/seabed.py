@@ -47,7 +47,7 @@ class HeightGrid:
 
     @property
     def extent(self) -> str:
-        """Where the grid lies, in words."""
+        """Extent of the grid, in words."""
         return f"x from {self.x[0]:g} to {self.x[-1]:g} m, y from {self.y[0]:g} to {self.y[-1]:g} m"
 
 
@@ -157,7 +157,7 @@ class HeightFile(GivenByName):
 
     @cached_property
     def heights(self) -> HeightGrid:
-        """What the file holds."""
+        """Contents of the file."""
         return read_heights(self.file)
 
 

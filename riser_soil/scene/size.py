@@ -39,7 +39,7 @@ class Size:
         return value == 0.0 or self.least <= abs(value) <= self.most
 
     def doubt(self, value: float) -> str:
-        """What is doubtful about a value, in words; "" for a plausible one."""
+        """Doubt about a value, in words; "" for a plausible one."""
         if self.holds(value):
             return ""
         fits = {unit: value * factor for unit, factor in self.others.items() if self.holds(value * factor)}

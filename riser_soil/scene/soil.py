@@ -54,7 +54,7 @@ class Block(BaseModel):
 
     @property
     def feature(self) -> SeabedFeature | None:
-        """What the top has beyond being level."""
+        """The top's feature: what it has beyond being level."""
         return self.trench or self.groove
 
 
@@ -356,7 +356,7 @@ class SoilScene(BaseModel):
 
     @property
     def laws_at_top(self) -> list[SoilLaw]:
-        """Those that the surface may lie in: of a plain block the first layer's."""
+        """Laws that the surface may lie in: of a plain block the first layer's."""
         plain = self.block is not None and (self.given_block is None or self.given_block.feature is None)
         return [self.top_law] if plain else self.laws
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def law_of(given: SoilScene, grid: DistributedMesh, shallowest: float = 0.0) -> Callable[[Array, Array], Formula]:
-    """What makes the formula of depths (n,) [m] and initial stress (n, 6) [Pa] of the grid's quadrature points.
+    """Maker of the formula from depths (n,) [m] and initial stress (n, 6) [Pa] of the grid's quadrature points.
 
     shallowest: soil that gains strength from nothing has at least that of this depth [m].
     """
@@ -40,7 +40,7 @@ def law_of(given: SoilScene, grid: DistributedMesh, shallowest: float = 0.0) -> 
 
 
 def strength_of(given: SoilScene, shallowest: float = 0.0) -> Callable[[IntArray, Array], Array]:
-    """What tells the undrained shear strength (n,) [Pa] of undisturbed soil in volumes (n,) at depths (n,) [m];
+    """Function for the undrained shear strength (n,) [Pa] of undisturbed soil in volumes (n,) at depths (n,) [m];
     infinite of soil that has none. shallowest: as in `law_of`.
     """
     laws, bottoms, by_volume = given.laws, boundaries(given.layers or ()), bool(volumes(given))
@@ -74,7 +74,7 @@ def initial_stress(given: SoilScene, depth: Array) -> Array:
 
 
 def density_of(given: SoilScene, scene: Scene) -> Callable[[Array], Array]:
-    """What tells the density (n,) [kg/m3] of soil and pore water at depths (n,) [m]."""
+    """Function for the density (n,) [kg/m3] of soil and pore water at depths (n,) [m]."""
     own, weight = given.density, weight_of(given)
     layers = weight if isinstance(weight, LayeredWeight) else LayeredWeight((), (weight,))
     water = SEA_WATER if scene.water is None else scene.water.density

@@ -51,7 +51,7 @@ def boundaries(layers: Sequence[Layer]) -> tuple[float, ...]:
 
 
 def wrong_layers(layers: Sequence[Layer], depth: float | None) -> PydanticCustomError | None:
-    """What is wrong with layers of a block of this depth [m], None of a mesh file."""
+    """Problem of layers in a block of this depth [m], None of a mesh file."""
     if any(layer.volume is not None for layer in layers):
         return _wrong_volumes(layers, depth)
     return _wrong_depths(layers, depth) or _too_weak(layers, depth)

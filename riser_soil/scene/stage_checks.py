@@ -92,7 +92,7 @@ def _nearest_node(scene: Scene, arc: float) -> float:
 
 
 def _at_rest(scene: Scene, n: int) -> Iterator[Problem]:
-    """What keeps a riser from having an equilibrium."""
+    """Problems that keep a riser from having an equilibrium."""
     if scene.line.is_tied:
         return
     if scene.line.start == scene.line.end == "free":
@@ -118,7 +118,7 @@ def moves_of(scene: Scene) -> Iterator[tuple[Path, Vector, Vector]]:
 
 
 def meant_as_displacement(scene: Scene, name: str, before: Vector, place: Vector) -> str:
-    """What to write where a new place of a line's end was probably meant as a displacement; empty where it was not."""
+    """Remedy where a new place of a line's end was probably meant as a displacement; empty where it was not."""
     way = minus(place, before)
     for by in (place, (place[0], place[1], way[2])):
         height = 1.0 if by is place else 0.0

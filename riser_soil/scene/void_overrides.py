@@ -48,7 +48,7 @@ def _guesses(scene: Scene) -> Iterator[Guess]:
 
 
 def _of_end(path: Path, riser: Riser, end: str) -> Iterator[Guess]:
-    """What is found for an end that hangs off, or has a tensioner."""
+    """The coordinate that is solved for, of an end that hangs off or has a tensioner."""
     support, other = getattr(riser, end), "start" if end == "end" else "end"
     if not isinstance(support, Support):
         return

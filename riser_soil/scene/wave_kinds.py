@@ -162,7 +162,7 @@ class GivenSpectrum(DrawnSea):
 
     @cached_property
     def table(self) -> SpectrumTable:
-        """What the file holds."""
+        """Contents of the file."""
         return read_spectrum(self.file, self.at, math.radians(self.north_deg))
 
     @property
@@ -211,7 +211,7 @@ class Record(BaseModel):
 
     @cached_property
     def record(self) -> ElevationRecord:
-        """What the file holds."""
+        """Contents of the file."""
         return read_elevation(self.file)
 
     @property

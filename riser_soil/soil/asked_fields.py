@@ -41,7 +41,7 @@ class AskedFields:
         return lambda depth, initial: WithStrain(law(depth, initial))
 
     def of_law(self, columns: Sequence[str]) -> FieldsOfLaw:
-        """Where they are in a history of such columns. Raises SceneError for what is not there."""
+        """Places of the fields in a history of such columns. Raises SceneError for what is not there."""
         own = _histories(columns)
         asked = [name for each in self.names for name in (own if each == HISTORIES else [each])]
         for name in asked:

@@ -64,7 +64,7 @@ class Family:
 
     @cached_property
     def derivatives(self) -> Array:
-        """Those of the shape functions on the reference cell (nq, nn, 3) at the quadrature's points; in a plane
+        """Derivatives of the shape functions on the reference cell (nq, nn, 3) at the quadrature's points; in a plane
         (nq, nn, 2).
         """
         table = tabulate(self.cell, self.degree, self.quadrature[0])[1:, :, :, 0]

@@ -63,7 +63,7 @@ class BlockSpec:
 
     @property
     def line(self) -> float:
-        """Where the riser's line begins, across that axis."""
+        """First place of the riser's line, across that axis."""
         return self.riser[0][1 - self.axis] if self.riser else sum((self.x, self.y)[1 - self.axis]) / 2.0
 
     @property
@@ -105,19 +105,21 @@ class BlockSpec:
         return self.along if lengthened and self.along is not None else self.size_at_riser
 
     def layers(self) -> tuple[int, int, int]:
-        """How many layers of hexahedra there are along x, y and z."""
+        """Numbers of layers of hexahedra there are along x, y and z."""
         x, y, z = (len(self.coordinates(axis)) - 1 for axis in range(3))
         return x, y, z
 
     def free_nodes(self) -> tuple[int, int, int]:
-        """How many nodes along x, y and z move by themselves: neither those of the bottom nor, of a half, images."""
+        """Numbers of nodes along x, y and z that move by themselves: neither those of the bottom nor, of a half,
+        images.
+        """
         counts = [n + 1 for n in self.layers()]
         counts[2] -= 1
         counts[1 - self.axis] -= self.half
         return counts[0], counts[1], counts[2]
 
     def coordinates(self, axis: int) -> Array:
-        """Where the layers of hexahedra meet along x, y or z (axis 2), rising; in z also where layers of soil do."""
+        """Coordinates of the layers' boundaries along x, y or z (axis 2), rising; in z also where layers of soil do."""
         places = graded(*self._grading(axis))
         if self.half and axis == 1 - self.axis:
             return places[(len(places) - 1) // 2 :]
@@ -233,7 +235,7 @@ def growing(length: float, size: float, size_far: float) -> Array:
 
 
 def steps(length: float, size: float, size_far: float) -> int:
-    """How many steps `growing` takes."""
+    """Number of steps that `growing` takes."""
     if length <= 1e-9 * size:
         return 0
     if abs(size_far / size - 1.0) < _EQUAL:

@@ -70,7 +70,7 @@ class DistributedMesh:
         return out
 
     def shares(self) -> Array:
-        """How often each of this rank's cells counts (nc,)."""
+        """Number of times that each of this rank's cells counts (nc,)."""
         out = np.ones(len(self.nodes.cells))
         if self.mirror is not None:
             out += ~self.mirror.behind(self.nodes.points)[self.nodes.cells].any(axis=1)

@@ -82,7 +82,7 @@ class ImportedLaw(SoilLaw):
         return imported_formula.formula_of(lambda: law(**given), depth, initial, f"{self._key}: {self.from_.label}")
 
     def _try(self, depth: Array, initial: Array) -> None:
-        """Where no trial has been yet."""
+        """Try the law, unless that has been done."""
         if not depth.size:
             return
         low, high = float(depth.min()), float(depth.max())

@@ -101,7 +101,7 @@ class SoilBoundary:
         return {self.name: MatrixBlock(rows, rows)}
 
     def begin_stage(self, state: State) -> None:
-        """What holds the boundary now is what acts on it from now on."""
+        """The forces that hold the boundary now act on it from now on."""
         forces = Forces.zeros(len(state.u))
         self._soil.residual(State.at_rest(state.t, len(state.u)), forces)
         self._held = np.where(self._released, self._soil.field.own(forces.force), 0.0)
@@ -119,7 +119,7 @@ class SoilBoundary:
         return Energy(potential=-self._done - float(self._held @ self._soil.field.own(state.u)))
 
     def work(self, before: State, after: State) -> Work:
-        """What the dashpots take: their mean force over the step."""
+        """Work of the dashpots: their mean force over the step."""
         own = self._soil.field.own
         return Work(dissipated=0.5 * self.damping.product(own(after.u), own(before.v) + own(after.v)))
 

@@ -135,7 +135,7 @@ class SoilLaw(BaseModel, ABC):
         return None
 
     def wrong_within(self, depth: float) -> tuple[str, str] | None:
-        """What is wrong with soil of this depth [m]: what is allowed, and what to do."""
+        """Problem of soil of this depth [m]: what is allowed, and what to do."""
         return None
 
     @property

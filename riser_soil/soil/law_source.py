@@ -183,7 +183,7 @@ def arguments(law: type[Any], given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def asked(law: type[Any], values: Mapping[str, Any]) -> dict[str, Any]:
-    """Those of the program's values that the constructor asks for."""
+    """The program's values that the constructor asks for."""
     known = _parameters(law) or {}
     return {key: value for key, value in values.items() if key in known}
 

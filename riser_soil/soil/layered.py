@@ -94,7 +94,7 @@ class LayeredFormula:
 
     @cached_property
     def _own(self) -> list[IntArray]:
-        """Where each formula's columns stand."""
+        """Columns of each formula."""
         return [np.array([self.columns.index(name) for name in formula.columns]) for formula in self.formulas]
 
     def start(self) -> Array:

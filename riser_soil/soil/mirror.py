@@ -39,7 +39,7 @@ class Mirror:
         return np.where(np.arange(3) == self.axis, -1.0, 1.0)
 
     def images(self, points: Array) -> Array:
-        """Those of points (n, 3) [m]."""
+        """Images of points (n, 3) [m]."""
         out = points.copy()
         out[:, self.axis] = 2.0 * self.at - out[:, self.axis]
         return out
@@ -69,7 +69,7 @@ class Mirror:
 
 
 def mirror_of(spec: BlockSpec) -> Mirror | None:
-    """That of a block of which half is meshed."""
+    """Mirror of a block of which half is meshed."""
     return Mirror(1 - spec.axis, spec.line, NEAR * spec.span) if spec.half else None
 
 

@@ -231,7 +231,7 @@ def _compiled(file: Path, form: Any) -> tuple[Any, tuple[int, ...]]:
 
 
 def _asked(file: Path, ask: Callable[[], Any]) -> Any:
-    """What the user's terms answer; SceneError where they fail."""
+    """Values of the user's terms; SceneError where they fail."""
     try:
         return ask()
     except SceneError:

@@ -206,7 +206,7 @@ class ConstitutiveFormula(OwnFormula):
 
     @cached_property
     def _order(self) -> list[int]:
-        """Where the law has each of the six components."""
+        """Places of the six components in the law's vectors."""
         probe, start = np.zeros((len(self.depth), 6)), self.start()
         probe[:, 5] = PROBE
         answers = np.abs(self._evaluated(probe, start, SHORTEST, [*range(6)])[0] - self.initial)[:, 4:].max(axis=0)

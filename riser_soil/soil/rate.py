@@ -46,12 +46,12 @@ class Rate(BaseModel):
     )
 
     def over(self, dt: float) -> Gain:
-        """What a step of dt [s] gains."""
+        """Gain of strength in a step of dt [s]."""
         return Gain(self.mu / math.log(10.0), self.reference * dt / math.sqrt(3.0)) if self.mu > 0.0 else STEADY
 
 
 def gain_of(rate: Rate | None, dt: float) -> Gain:
-    """What a step of dt [s] gains by a rate, if strength hangs on that."""
+    """Gain of strength by the rate in a step of dt [s]; STEADY without a rate."""
     return STEADY if rate is None else rate.over(dt)
 
 

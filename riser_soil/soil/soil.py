@@ -201,11 +201,11 @@ class Soil:
 
     @property
     def points(self) -> Array:
-        """Where this rank's nodes are (n, 3) [m]."""
+        """Positions of this rank's nodes (n, 3) [m]."""
         return np.asarray(self.grid.nodes.points + self.field.total.reshape(-1, 3))
 
     def gathered_points(self) -> Array:
-        """Where all nodes are (n, 3) [m], on rank 0; collective."""
+        """Positions of all nodes (n, 3) [m], on rank 0; collective."""
         return self.mesh.unfolding.points(gather_rows(self.grid, self.points[: self.grid.nodes.owned]))
 
     @property
@@ -355,7 +355,7 @@ class Soil:
 
     @property
     def _moved(self) -> Saved:
-        """What the gradients are made of, and the last mesh, where cells move."""
+        """Geometry of the gradients, and the last mesh, where cells move."""
         if not self.moves:
             return {}
         kept = {"in_balance": self._in_balance, "made_at": self.cells.made_at, "mesh_at": self._mesh_at}

@@ -124,5 +124,5 @@ class WeakForm:
 
 
 def components(e: Any) -> Any:
-    """Those of a symmetric tensor (3, 3), so that a product of two is that of the tensors."""
+    """Components of a symmetric tensor (3, 3), so that a product of two is that of the tensors."""
     return ufl.as_vector([e[0, 0], e[1, 1], e[2, 2], ROOT2 * e[0, 1], ROOT2 * e[0, 2], ROOT2 * e[1, 2]])

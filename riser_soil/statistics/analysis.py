@@ -28,7 +28,7 @@ FINE = 20  # values in a zero-crossing period, from which on peaks are hardly mi
 
 @dataclass(frozen=True)
 class Wanted:
-    """What the extremes are those of.
+    """Settings by which extremes are predicted.
 
     duration: for which the largest value is predicted [s]. block: length of the blocks that Gumbel's distribution is
     fitted to [s]; None for as long as the shortest run. minima: smallest values in the place of largest ones.

@@ -60,7 +60,7 @@ class Ending:
 
 
 def import_all() -> None:
-    """What the processes then have already."""
+    """Import what all processes need, once."""
     for name in ("riser_soil.checks.check", "riser_soil.whole_run", "riser_soil.soil.soil"):
         import_module(name)
 

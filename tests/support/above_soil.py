@@ -69,7 +69,7 @@ class Seen:
 
 
 class Counting:
-    """What has been asked for since it was read last."""
+    """Counts of calls since they were read last."""
 
     def __init__(self) -> None:
         self.alone: list[bool] = []

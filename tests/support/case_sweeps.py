@@ -19,7 +19,7 @@ def sweep(folder: Path, *options: str) -> Job:
 
 
 class Watched:
-    """What is seen of a sweep while it goes on.
+    """Progress of a sweep as a watcher records it.
 
     attempts: names of all folders in which a case was begun.
     """

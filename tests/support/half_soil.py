@@ -63,7 +63,7 @@ class Found(NamedTuple):
 
     @property
     def compared(self) -> dict[str, Array]:
-        """What must be the same."""
+        """The results that must be the same."""
         return {name: values for name, values in self._asdict().items() if isinstance(values, np.ndarray)}
 
 

@@ -193,7 +193,7 @@ def require_tangles(dimension: int) -> None:
 
 
 def require_element_residual(results: StepResults, line: Line, parts: list[Any], accepted: State) -> None:
-    """What acts within the elements is what the parts' methods tell."""
+    """Forces within the elements are those of the parts' methods."""
     expected = element_residual(line, parts, accepted)
     residual, scale = results.element_residual(line, accepted), np.abs(expected).max()
     np.testing.assert_allclose(residual, expected, rtol=0.0, atol=1e-12 * scale)
@@ -218,7 +218,7 @@ def require_section_forces(compiled: TimedStage, snes: TimedStage) -> None:
 
 
 def require_contact_results(stage: TimedStage) -> None:
-    """What the loop tells of contact after a step is what the contact's methods tell."""
+    """Results of contact after a step are those of the contact's methods."""
     for contact in stage.assembly.contacts:
         assert isinstance(contact, SeabedContact)
         sizes = stage.assembly.riser.line.nodes, contact.along.arc.size

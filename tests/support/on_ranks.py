@@ -70,7 +70,7 @@ class Job:
             time.sleep(0.01)
 
     def processes(self) -> list[int]:
-        """Those that are alive; one that has ended has no environment any more."""
+        """Processes that are alive; one that has ended has no environment any more."""
         mark = f"{MARK}={self._mark}".encode()
         return [int(entry.name) for entry in Path("/proc").glob("[0-9]*") if mark in _environment_of(entry)]
 

@@ -47,7 +47,7 @@ PAIRS = list(product((1e6, 1e7, 1e8), (0.1, 0.02, 0.005)))
 
 
 def energies(scene: Mapping) -> Energies:
-    """Those of a scene's only stage."""
+    """Energies of a scene's only stage."""
     assembly, watch = built(scene), Energies()
     run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), watch, Timer.new())
     return watch

@@ -68,7 +68,7 @@ def scene(ground: str, *stages: Mapping, apart: float = USUAL, finer: float = 1.
 
 @dataclass
 class Laid(Watcher):
-    """What is seen of a scene's static stages."""
+    """Watcher of a scene's static stages."""
 
     def __init__(self, assembly: Assembly) -> None:
         super().__init__(self._see)

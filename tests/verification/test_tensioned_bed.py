@@ -79,7 +79,7 @@ def lying(k: float, length: float, size: float, method: str, *loads: Any, tensio
 
 
 def roots(k: float, tension: float = H) -> Array:
-    """Those of EI r⁴ - H r² + k = 0 with positive real parts (2,)."""
+    """Roots of EI r⁴ - H r² + k = 0 with positive real parts (2,)."""
     under = np.sqrt(complex(tension**2 - 4.0 * EI * k))
     return np.sqrt(np.array([tension + under, tension - under]) / (2.0 * EI))
 

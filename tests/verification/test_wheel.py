@@ -47,7 +47,7 @@ def size(folder: Path) -> float:
 
 
 def refused(programs: Path, folder: Path, *command: str) -> str:
-    """What a command says that lacks a package."""
+    """Message of a command that lacks a package."""
     done = subprocess.run(
         [programs / "riser-soil", *command], cwd=folder, env=_mine(), capture_output=True, text=True, check=False
     )

@@ -63,7 +63,7 @@ def page(rows: Sequence[StressOutcome], made: Mapping[str, Any]) -> str:
 
 
 def passed(rows: Sequence[StressOutcome]) -> str:
-    """Those that passed: what was judged, and its error."""
+    """Table of cases that passed: what was judged, and its error."""
     cells = [[row.name, row.answer.split(":")[0], _error(row)] for row in rows if row.verdict == PASSED]
     return table(["case", "answer", "error"], cells)
 

@@ -57,7 +57,7 @@ def judged(case: StressCase, folder: Path) -> StressOutcome:
 
 
 def _answers(trial: Trial, place: Path) -> Iterator[Answer]:
-    """Those of the case, then the bounds that hold for all."""
+    """Answers of the case, then the bounds that hold for all."""
     runs = dict(zip(trial.scenes, runs_in(place, trial.scenes), strict=True))
     yield from trial.answers(runs)
     for run in runs.values():

@@ -227,7 +227,7 @@ def test_what_falls_between_steps_and_what_rings_is_the_time_steps() -> None:
 
 
 def test_no_bar_without_a_coarser_run() -> None:
-    """What is known is told by source; what stands behind one that failed is not compared with what stands before."""
+    """Known shares are given by source; runs behind one that failed are not compared with those before it."""
     failed = ComparisonRun("time", 0.2, None, "it did")
     bar = bar_of(1000.0, 1000.0, failed, comparison_run("mesh", 2.0, 1001.0))
     assert bar.bar is None

@@ -92,7 +92,7 @@ def on_clay(su: float, **soil: object) -> Mapping:
 
 
 def overloaded(scene: Mapping, folder: Path) -> list[str]:
-    """What is told of the soil's load after the only stage."""
+    """Warnings about the soil's load after the only stage."""
     run(scene_from_mapping(scene), folder)
     (stage,) = json.loads((folder / "summary.json").read_text())["stages"]
     return [warning for warning in stage["warnings"] if "the soil bears" in warning]

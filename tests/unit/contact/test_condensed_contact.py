@@ -37,7 +37,7 @@ class Beside:
         self.touching.look(tried=False)
 
     def at(self, state: State) -> LineForces:
-        """What is found at a state, the soil as it is."""
+        """Readings at a state, the soil as it is."""
         placed = self.made.line.once(LineTrials).now
         placed.move(state)
         out, data = forces_at(placed.at), self.touching._data

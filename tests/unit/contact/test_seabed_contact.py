@@ -76,7 +76,7 @@ def test_the_first_guess_lands_as_it_does_beside_soil(dimension: int) -> None:
 
 @both_dimensions
 def test_on_clay_the_first_guess_goes_on(dimension: int) -> None:
-    """Where the same line is raised over stiffer ground."""
+    """The line is raised over stiffer ground."""
     at = sample(dimension)
     ground = Plane.sloping(START - np.array([0.0, 0.0, 0.1]), 0.1, 0.3)
     radius, guess = np.full(at.line.length.size, 0.1), at.state(1)

@@ -120,7 +120,7 @@ def test_a_pipe_in_full_adhesion_bears_it_over_the_area_that_touches() -> None:
 
 
 def test_the_tangent_needs_the_change_of_the_pressure(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where friction is below the adhesion."""
+    """Friction is below the adhesion."""
     made = pipe_on_surface(sagging(), top("quad4"))
     friction = with_friction(made, clay(made))
     made.commit(shaken(made, 1, 2e-3), friction)

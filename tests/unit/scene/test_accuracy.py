@@ -172,7 +172,7 @@ def test_accuracy_that_is_not_reached_is_reported(tmp_path: Path, monkeypatch: p
 def test_an_impact_that_hardly_converges_ends_the_search_early(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """With what it would take, as the run that is left would not reach it."""
+    """The message has what it would take, as the remaining run would not reach it."""
     monkeypatch.setattr(target_run, "RUNS", 2)
     scene = scene_from_mapping(asking("cantilever under a sudden load", "1 %"))
     with pytest.raises(AccuracyError, match=r"at least \d+ times .*run has that"):

@@ -44,7 +44,7 @@ def kernels_in(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def factorised(monkeypatch: pytest.MonkeyPatch) -> list[Compliance]:
-    """Those whose stiffness has been factorised."""
+    """Soils whose stiffness has been factorised."""
     usual, done = Compliance._factorised, list[Compliance]()
 
     def counted(compliance: Compliance) -> Any:

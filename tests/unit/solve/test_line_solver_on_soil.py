@@ -53,7 +53,7 @@ def scene(case: str, newton: str) -> Mapping:
 
 
 def states_of(case: str, newton: str) -> list[dict[str, Array]]:
-    """What each accepted step of the dynamic stage tells."""
+    """Results of each accepted step of the dynamic stage."""
     assembly, states = built(scene(case, newton)), list[dict[str, Array]]()
     contact, line, condensed = soil_under(assembly).contact, assembly.riser.line, soil_under(assembly).condensed
     assert contact is not None
