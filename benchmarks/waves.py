@@ -57,9 +57,9 @@ def measure(count: int) -> tuple[Cost, Cost]:
     stage = last_stage(SCENE, (f"water.waves.jonswap.components={count}",), Timer.new())
     sea = stage.assembly.sea
     assert sea is not None
-    series = sea.in_stage(stage.stage)
+    series = sea.in_stage(stage.stage).flow
     with patch("riser_soil.assembly.waves.linear_waves", PlainSums):
-        summed = sea.in_stage(stage.stage)
+        summed = sea.in_stage(stage.stage).flow
     assert series is not None
     assert summed is not None
     sums = next(flow for flow in summed.flows if isinstance(flow, PlainSums))

@@ -10,7 +10,7 @@ import numpy as np
 
 from riser_soil.assembly.bodies_on_seabed import on_seabed
 from riser_soil.assembly.line_assembly import LineAssembly
-from riser_soil.assembly.sea import SeaAssembly
+from riser_soil.assembly.sea import SeaAssembly, StageWater
 from riser_soil.bodies.body import BodyProperties, MovingBody
 from riser_soil.bodies.drag import BodyDrag
 from riser_soil.bodies.inertia import BodyInertia, MidpointBodyInertia
@@ -91,7 +91,7 @@ class Hung:
             if isinstance(stage, DynamicStage):
                 inertia = MidpointBodyInertia if isinstance(stage.scheme, MidpointScheme) else BodyInertia
                 parts.append(inertia(body, self.given[name].mass_matrix()))
-            if sea is not None and (drag := _drag(sea, stage, body, self.given[name])):
+            if sea is not None and (drag := _drag(sea.in_stage(stage), body, self.given[name])):
                 parts.append(drag)
             if loads := loads_on_body(scene.stages, stage, name):
                 from riser_soil.assembly.loads import loads_of_body
@@ -100,20 +100,18 @@ class Hung:
         return parts
 
 
-def _drag(sea: SeaAssembly, stage: Stage, body: MovingBody, given: BodyProperties) -> BodyDrag | None:
+def _drag(water: StageWater, body: MovingBody, given: BodyProperties) -> BodyDrag | None:
     """Drag and added mass of a body in a stage; None where the water does nothing beyond carrying it."""
-    water = sea.water
-    if not isinstance(stage, DynamicStage) and not sea.moves_in(stage):
+    if not water.is_dynamic and not water.moves:
         return None
     drags = bool(given.drag.any() or given.spin_drag.any())
-    pushed = bool(given.volume or given.added_mass.any()) and sea.accelerates_in(stage)
+    pushed = bool(given.volume or given.added_mass.any()) and water.accelerates
     if not drags and not pushed:
         return None
-    waves = sea.has_waves_in(stage)
-    buoyancy = sea.scene.gravity * water.density * given.volume if waves else 0.0
-    level = water.surface_level if water.surface_level is not None else np.inf
-    flow = sea.in_stage(stage) or Sea(None)
-    return BodyDrag(body, given, flow, water.density, buoyancy, level, not sea.moves_in(stage))
+    density, level = water.given.density, water.given.surface_level
+    buoyancy = water.sea.scene.gravity * density * given.volume if water.has_waves else 0.0
+    flow = water.flow or Sea(None)
+    return BodyDrag(body, given, flow, density, buoyancy, np.inf if level is None else level, not water.moves)
 
 
 def hung_of(scene: Scene, lines: Mapping[str, LineAssembly], active: bool) -> Hung:

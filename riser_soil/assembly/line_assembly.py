@@ -232,10 +232,10 @@ class LineAssembly:
             from riser_soil.assembly.dynamics import dynamic_parts
 
             parts += dynamic_parts(stage, line, elements, self.attachments)
-        if self.sea is not None and self.sea.acts_in(stage):
+        if self.sea is not None and (water := self.sea.in_stage(stage)).acts:
             from riser_soil.assembly.sea_loads import sea_loads
 
-            parts += sea_loads(scene, self.sea, line, elements, stage, self.attachments)
+            parts += sea_loads(scene, water, line, elements, self.attachments)
         return parts
 
     def pressure_change(self, t: float) -> float:

@@ -79,7 +79,7 @@ def _stiffened(riser: Riser, elements: sections.Elements, around: sections.Surro
 
 
 def _of_type(given: LineType, lengths: Sequence[float], around: sections.Surroundings) -> sections.Elements:
-    """Elements of a line type; what it does not give they do not have."""
+    """Elements of a line type; what it does not give is None here."""
     EI_y, EI_z = given.bending_stiffness
     outer, inner = given.wall_diameters
     return sections.elements(
@@ -88,23 +88,23 @@ def _of_type(given: LineType, lengths: Sequence[float], around: sections.Surroun
         EA=given.EA,
         EI_y=EI_y,
         EI_z=EI_z,
-        GJ=given.GJ or 0.0,
-        mass=given.mass or 0.0,
-        outer_diameter=given.outer_diameter or 0.0,
+        GJ=given.GJ,
+        mass=given.mass,
+        outer_diameter=given.outer_diameter,
         inner_diameter=given.inner_diameter,
         submerged_weight=given.submerged_weight,
         rotary_inertia=None if given.rotary_inertia is True else float(given.rotary_inertia),
-        bare_diameter=given.pipe_diameter or 0.0,
+        pipe_diameter=given.pipe_diameter,
         wall_outer_diameter=outer,
         wall_inner_diameter=inner,
-        allowable_stress=given.wall.allowable_stress if given.wall else 0.0,
+        allowable_stress=given.wall.allowable_stress if given.wall else None,
         drag=(given.normal_drag, given.drag.tangential if given.drag else 0.0),
-        added_mass=(given.added_mass.normal, given.added_mass.tangential) if given.added_mass else (0.0, 0.0),
+        added_mass=(given.added_mass.normal, given.added_mass.tangential) if given.added_mass else None,
         vortices=given.vortices,
         in_line_vortices=given.in_line_vortices,
-        damping=given.damping.time if given.damping else 0.0,
-        min_bend_radius=given.min_bend_radius or 0.0,
-        max_tension=given.max_tension or 0.0,
+        damping=given.damping.time if given.damping else None,
+        min_bend_radius=given.min_bend_radius,
+        max_tension=given.max_tension,
     )
 
 

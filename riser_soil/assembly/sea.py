@@ -39,55 +39,89 @@ class SeaAssembly:
 
         return DrawnWaves(self.water.waves, self.scene.gravity, self.scene.water_depth)
 
-    def acts_in(self, stage: Stage) -> bool:
-        """Whether the water may do more in a stage than carry what is submerged: by a surface, or by motion."""
-        return isinstance(stage, DynamicStage) or self.moves_in(stage) or self.water.surface_level is not None
+    def in_stage(self, stage: Stage) -> StageWater:
+        """The water in a stage."""
+        return StageWater(self, stage)
 
-    def moves_in(self, stage: Stage) -> bool:
-        """Whether the water moves in a stage."""
-        return self.water.current is not None or self.has_waves_in(stage)
 
-    def has_waves_in(self, stage: Stage) -> bool:
-        """Whether a stage has waves: dynamic ones have those of the scene."""
-        return self.water.waves is not None and isinstance(stage, DynamicStage)
+@dataclass(frozen=True, eq=False)
+class StageWater:
+    """The water of a scene in a stage: whether and how it moves, its surface, its flow."""
 
-    def accelerates_in(self, stage: Stage) -> bool:
-        """Whether the water accelerates in a stage, by waves or a current that changes."""
-        changes = self.water.current is not None and self.water.current.history is not None
-        return self.has_waves_in(stage) or (changes and isinstance(stage, DynamicStage))
+    sea: SeaAssembly
+    stage: Stage
 
-    def in_stage(self, stage: Stage) -> Sea | None:
-        """The water in a stage: current, in dynamic stages waves, and the surface.
+    @property
+    def given(self) -> Water:
+        """The scene's water."""
+        return self.sea.water
+
+    @property
+    def is_dynamic(self) -> bool:
+        """Whether lines and bodies may move through it."""
+        return isinstance(self.stage, DynamicStage)
+
+    @property
+    def acts(self) -> bool:
+        """Whether it may do more than carry what is submerged: by a surface, or by motion."""
+        return self.is_dynamic or self.moves or self.has_surface
+
+    @property
+    def moves(self) -> bool:
+        """Whether it moves."""
+        return self.given.current is not None or self.has_waves
+
+    @property
+    def has_waves(self) -> bool:
+        """Whether it has waves: dynamic stages have those of the scene."""
+        return self.given.waves is not None and self.is_dynamic
+
+    @property
+    def accelerates(self) -> bool:
+        """Whether it accelerates, by waves or a current that changes."""
+        changes = self.given.current is not None and self.given.current.history is not None
+        return self.has_waves or (changes and self.is_dynamic)
+
+    @property
+    def has_surface(self) -> bool:
+        """Whether it has a surface; without one all is submerged."""
+        return self.given.surface_level is not None
+
+    @property
+    def flow(self) -> Sea | None:
+        """Current, in dynamic stages waves, and the surface, made anew for each who asks.
 
         None where nothing moves and there is no surface: still water around what is submerged.
         """
-        if not self.moves_in(stage) and self.water.surface_level is None:
+        if not self.moves and not self.has_surface:
             return None
         from riser_soil.sea.flows import Sea
 
-        return Sea(self.water.surface_level, list(self._flows(stage)))
+        return Sea(self.given.surface_level, list(self._flows()))
 
-    def _flows(self, stage: Stage) -> Iterator[SteadyCurrent | ChangingCurrent | WaveField | SteadyFlow]:
-        if self.water.current is not None:
-            yield self._current(self.water.current, stage)
-        if self.waves is not None and self.has_waves_in(stage):
-            assert self.water.surface_level is not None
-            yield self.waves.flow(self.water.surface_level, wave_clock(self.scene, stage), wave_age(self.scene, stage))
+    def _flows(self) -> Iterator[SteadyCurrent | ChangingCurrent | WaveField | SteadyFlow]:
+        scene, stage = self.sea.scene, self.stage
+        if self.given.current is not None:
+            yield _current(scene, self.given.current, stage)
+        if self.sea.waves is not None and self.has_waves:
+            assert self.given.surface_level is not None
+            yield self.sea.waves.flow(self.given.surface_level, wave_clock(scene, stage), wave_age(scene, stage))
 
-    def _current(self, given: Current, stage: Stage) -> SteadyCurrent | ChangingCurrent:
-        """It grows with the load factor in a first static stage, but where a scene begins with the end of another run;
-        else it is there in full.
-        """
-        from riser_soil.sea.current import SteadyCurrent, changing_current
 
-        first = stage.name == self.scene.stages[0].name
-        grows = isinstance(stage, StaticStage) and first and self.scene.initial is None
-        level = np.unique([z for _, profile in given.each for z, _, _ in profile])
-        velocity = np.array([_at_levels(np.array(profile), level) for _, profile in given.each])
-        if given.history is None:
-            return SteadyCurrent(level, velocity[0], grows)
-        time, runs = np.array([each.time for each in given.history]), isinstance(stage, DynamicStage)
-        return changing_current(level, time, velocity, wave_clock(self.scene, stage), runs, grows)
+def _current(scene: Scene, given: Current, stage: Stage) -> SteadyCurrent | ChangingCurrent:
+    """The current of a stage. It grows with the load factor in a first static stage, but where a scene begins with the
+    end of another run; else it is there in full.
+    """
+    from riser_soil.sea.current import SteadyCurrent, changing_current
+
+    first = stage.name == scene.stages[0].name
+    grows = isinstance(stage, StaticStage) and first and scene.initial is None
+    level = np.unique([z for _, profile in given.each for z, _, _ in profile])
+    velocity = np.array([_at_levels(np.array(profile), level) for _, profile in given.each])
+    if given.history is None:
+        return SteadyCurrent(level, velocity[0], grows)
+    time, runs = np.array([each.time for each in given.history]), isinstance(stage, DynamicStage)
+    return changing_current(level, time, velocity, wave_clock(scene, stage), runs, grows)
 
 
 def sea_of(scene: Scene) -> SeaAssembly | None:

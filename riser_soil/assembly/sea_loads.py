@@ -8,13 +8,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from riser_soil.assembly.bodies import Body, ModulesInWater, PipeInWater
-from riser_soil.assembly.sea import SeaAssembly
+from riser_soil.assembly.sea import StageWater
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Part
 from riser_soil.riser.line import Line
 from riser_soil.riser.sections import Elements
 from riser_soil.scene.scene import Scene
-from riser_soil.scene.stages import DynamicStage, Stage
 from riser_soil.scene.water import Water
 from riser_soil.sea.morison import Morison, in_sea, in_still_water, pushed_masses
 from riser_soil.sea.stream_kernels import FlowAtStations
@@ -31,19 +30,18 @@ if TYPE_CHECKING:
 
 def sea_loads(
     scene: Scene,
-    sea: SeaAssembly,
+    water: StageWater,
     line: Line,
     elements: Elements,
-    stage: Stage,
     attachments: Sequence[PointAttachment] = (),
 ) -> list[Part]:
     """The parts "morison", "vortices", "vortices in line" and "buoyancy" of a stage, of the pipe and its modules."""
-    water = sea.water
-    bodies: list[Body] = [PipeInWater(water.density, line, elements, tables_of(scene, water, elements))]
+    density = water.given.density
+    bodies: list[Body] = [PipeInWater(density, line, elements, tables_of(scene, water.given, elements))]
     modules = [attachment for attachment in attachments if attachment.volume or attachment.drag_area]
     if modules:
-        bodies.append(ModulesInWater(water.density, line, modules))
-    return [part for body in bodies for part in _BodyLoads(sea, body, stage).parts()]
+        bodies.append(ModulesInWater(density, line, modules))
+    return [part for body in bodies for part in _BodyLoads(water, body).parts()]
 
 
 def tables_of(scene: Scene, water: Water, elements: Elements) -> ReynoldsTables | None:
@@ -62,59 +60,48 @@ def tables_of(scene: Scene, water: Water, elements: Elements) -> ReynoldsTables 
 class _BodyLoads:
     """Hydrodynamic loads on a body in a stage."""
 
-    sea: SeaAssembly
+    water: StageWater
     body: Body
-    stage: Stage
 
     def parts(self) -> Iterator[Part]:
         if self.act:
             yield self.morison
             if (tables := self.body.reynolds) is not None:
                 yield self._reynolds_drag(tables)
-        if isinstance(self.stage, DynamicStage):
+        if self.water.is_dynamic:
             yield from (self._vortices(shedding, in_line) for in_line, shedding in self.body.shedding.items())
-        if self.surface is not None:
+        if self.water.has_surface:
             yield self.buoyancy
 
     @property
     def act(self) -> bool:
         """Whether the water does more than carry: in motion, or in a stage in which the riser moves."""
-        if isinstance(self.stage, DynamicStage):
-            return self.body.drags or self.body.adds_mass or self.sea.accelerates_in(self.stage)
-        return self.body.drags and self.sea.moves_in(self.stage)
-
-    @cached_property
-    def stream(self) -> FlowAtStations | None:
-        """Water that moves."""
-        return self._flow if self.sea.moves_in(self.stage) else None
+        if self.water.is_dynamic:
+            return self.body.drags or self.body.adds_mass or self.water.accelerates
+        return self.body.drags and self.water.moves
 
     @cached_property
     def _flow(self) -> FlowAtStations:
-        """The water around the pipe, which may stand still."""
-        return FlowAtStations(self.body.pipe, self.sea.in_stage(self.stage))
-
-    @cached_property
-    def surface(self) -> FlowAtStations | None:
-        """Water that has one, whether it moves or not."""
-        return None if self.sea.water.surface_level is None else self._flow
+        """The water at the body's stations; it may stand still."""
+        return FlowAtStations(self.body.pipe, self.water.flow)
 
     @property
     def morison(self) -> Morison:
-        body, still = self.body, self.stream is None
-        if still and self.surface is None and not body.pipe.points_alone:
+        body, still = self.body, not self.water.moves
+        if still and not self.water.has_surface and not body.pipe.points_alone:
             return in_still_water(body.pipe, body.drag, body.mass)
-        pushed = pushed_masses(body.mass, body.displaced) if self.sea.accelerates_in(self.stage) else None
+        pushed = pushed_masses(body.mass, body.displaced) if self.water.accelerates else None
         return in_sea(self._flow, body.drag, body.mass, pushed, self._span, dissipative=still)
 
     @property
     def _span(self) -> Array | None:
         """Widths of the sections that get dry; None where the water has no surface."""
-        return None if self.surface is None else self.body.span
+        return self.body.span if self.water.has_surface else None
 
     def _reynolds_drag(self, tables: ReynoldsTables) -> Morison:
         from riser_soil.sea.reynolds_drag import reynolds_drag
 
-        return reynolds_drag(self._flow, tables, self._span, dissipative=self.stream is None)
+        return reynolds_drag(self._flow, tables, self._span, dissipative=not self.water.moves)
 
     def _vortices(self, shedding: Shedding, in_line: bool) -> Vortices:
         from riser_soil.sea.vortices import Vortices
@@ -125,5 +112,4 @@ class _BodyLoads:
     def buoyancy(self) -> Buoyancy:
         from riser_soil.sea.buoyancy import Buoyancy
 
-        assert self.surface is not None
-        return Buoyancy(self.surface, self.body.dry(self.sea.scene.gravity), flat=not self.sea.has_waves_in(self.stage))
+        return Buoyancy(self._flow, self.body.dry(self.water.sea.scene.gravity), flat=not self.water.has_waves)

@@ -17,6 +17,7 @@ from riser_soil.commands.scenes import (
     result_folder,
 )
 from riser_soil.errors import SceneError
+from riser_soil.interruption import handling_signals
 
 
 def run(
@@ -99,7 +100,6 @@ def modes(
         from riser_soil.assembly.packages import FOR_SNES, require
 
         require("modes", FOR_SNES)
-        from riser_soil.interruption import handling_signals
         from riser_soil.modes.modes import modes_of
         from riser_soil.modes.report import refuse_folder, table, write_folder
 

@@ -337,7 +337,7 @@ def _of_line(own: LineAssembly) -> list[Part]:
         scene = scene.model_copy(update={"water": scene.water.model_copy(update={"waves": None, "current": None})})
     parts = dynamic_parts(MOVING, line, elements, attached)
     if (still := sea_of(scene)) is not None:
-        parts += sea_loads(scene, still, line, elements, MOVING, attached)
+        parts += sea_loads(scene, still.in_stage(MOVING), line, elements, attached)
     if (contents := scene.line.inner_flow) is not None:
         parts.append(contents_at(scene, contents, line, elements, clock=0.0))
     return [part for part in parts if "I" in part.traits.groups]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -131,8 +132,11 @@ def larger_beside(values: Array) -> Array:
     return np.maximum(np.append(values, 0.0), np.append(0.0, values))
 
 
-NOTHING: dict[str, float | tuple[float, ...]] = {  # in place of properties that a pipe need not have
+NOT_GIVEN: dict[str, float | tuple[float, ...]] = {  # properties that a pipe need not have
     "GJ": 0.0,
+    "outer_diameter": 0.0,
+    "inner_diameter": 0.0,
+    "mass": 0.0,
     "drag": (0.0, 0.0),
     "added_mass": (0.0, 0.0),
     "vortices": (0.0, 0.0, 0.0),
@@ -140,7 +144,10 @@ NOTHING: dict[str, float | tuple[float, ...]] = {  # in place of properties that
     "damping": 0.0,
     "min_bend_radius": 0.0,
     "max_tension": 0.0,
+    "wall_outer_diameter": 0.0,
+    "wall_inner_diameter": 0.0,
     "allowable_stress": 0.0,
+    "pipe_diameter": 0.0,
 }
 
 
@@ -151,41 +158,33 @@ def elements(
     EA: float,
     EI_y: float,
     EI_z: float,
-    mass: float = 0.0,
-    outer_diameter: float = 0.0,
-    inner_diameter: float = 0.0,
     submerged_weight: float | None = None,
     rotary_inertia: float | None = 0.0,
-    bare_diameter: float = 0.0,
-    wall_outer_diameter: float = 0.0,
-    wall_inner_diameter: float = 0.0,
-    **others: float | tuple[float, ...],
+    **properties: float | tuple[float, ...] | None,
 ) -> Elements:
     """Elements of one kind of pipe, by their unstressed lengths [m].
 
-    EI_y and EI_z are about the second and third section axis. mass: empty, in air. submerged_weight and rotary_inertia:
-    None computes them from masses and diameters. bare_diameter: of the pipe inside a coat or buoyancy modules, 0 where
-    outer_diameter is the pipe's own. others: further properties of `Elements`, by default NOTHING.
+    EI_y and EI_z are about the second and third section axis. submerged_weight and rotary_inertia: None computes them
+    from masses and diameters. properties: those of NOT_GIVEN, whose values stand for what is missing or None; mass is
+    the empty pipe's in air, pipe_diameter is the pipe's inside a coat or buoyancy modules.
     """
-    filled = mass + around.contents * 0.25 * np.pi * inner_diameter**2
-    of_round_section = (mass * outer_diameter**2 + filled * inner_diameter**2) / 16.0
+    own: dict[str, Any] = NOT_GIVEN | {name: value for name, value in properties.items() if value is not None}
+    mass, outer, inner = own["mass"], own["outer_diameter"], own["inner_diameter"]
+    filled = mass + around.contents * 0.25 * np.pi * inner**2
+    of_round_section = (mass * outer**2 + filled * inner**2) / 16.0
     across = of_round_section if rotary_inertia is None else rotary_inertia
-    polar = 2.0 * of_round_section if outer_diameter > 0.0 else filled * (EI_y + EI_z) / EA
-    displaced = around.water * 0.25 * np.pi * outer_diameter**2
-    values = NOTHING | others | {
+    polar = 2.0 * of_round_section if outer > 0.0 else filled * (EI_y + EI_z) / EA
+    displaced = around.water * 0.25 * np.pi * outer**2
+    values = own | {
         "EA": EA,
         "EI_y": EI_y,
         "EI_z": EI_z,
-        "outer_diameter": outer_diameter,
-        "inner_diameter": inner_diameter,
         "mass": filled,
         "weight": around.gravity * (filled - displaced) if submerged_weight is None else submerged_weight,
         "rotary_inertia": across,
         "polar_inertia": 2.0 * across or polar,
-        "wall_outer_diameter": wall_outer_diameter,
-        "wall_inner_diameter": wall_inner_diameter,
-        "pipe_diameter": wall_outer_diameter or bare_diameter or outer_diameter,
-        "pipe_bore": wall_inner_diameter or inner_diameter,
+        "pipe_diameter": own["wall_outer_diameter"] or own["pipe_diameter"] or outer,
+        "pipe_bore": own["wall_inner_diameter"] or inner,
         "pipe_EI_y": EI_y,
         "pipe_EI_z": EI_z,
     }

@@ -16,7 +16,7 @@ if TYPE_CHECKING:  # what a scene lacks is not imported
 def water_of(scene: Scene, stage: Stage) -> Sea | None:
     """The water in a stage; None where nothing moves and there is no surface."""
     sea = sea_of(scene)
-    return None if sea is None else sea.in_stage(stage)
+    return None if sea is None else sea.in_stage(stage).flow
 
 
 def components_of(scene: Scene) -> Components | None:
