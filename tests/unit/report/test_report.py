@@ -7,7 +7,10 @@ import io
 import json
 import re
 import shutil
+import subprocess
+import tempfile
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -32,10 +35,35 @@ from riser_soil.report.sources import opened
 from riser_soil.report.tables import ReportTable, compact, number
 from riser_soil.results import Run
 from riser_soil.soil.kinematic_hardening import KinematicHardening
-from tests.support.browser import visit
 from tests.support.on_ranks import ROOT
 from tests.support.recorded_run import block, record
 from tests.support.said import line_with, telling
+
+NAMES = ("chromium-headless-shell", "chromium")
+QUIET = (
+    *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync"),
+    *("--disable-background-networking", "--disable-component-update", "--enable-logging=stderr", "--v=0"),
+)
+
+
+@dataclass(frozen=True)
+class Visit:
+    """What the browser printed, and the messages of its console."""
+
+    printed: str
+    console: list[str]
+
+
+def visit(page: Path, *options: str) -> Visit:
+    """Opens a page in an empty profile, by options such as --dump-dom, --screenshot=FILE and --print-to-pdf=FILE."""
+    program = next((path for name in NAMES if (path := shutil.which(name))), None)
+    assert program is not None, f"none of {', '.join(NAMES)} is installed; make setup does it"
+    with tempfile.TemporaryDirectory() as profile:
+        call = [program, *QUIET, f"--user-data-dir={profile}", *options, page.resolve().as_uri()]
+        done = subprocess.run(call, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    return Visit(done.stdout, [line for line in done.stderr.splitlines() if "CONSOLE" in line])
+
 
 SCENE = (ROOT / "demos/first_scene.yaml").read_text(encoding="utf-8")
 WARNING = "elements are <long>"
