@@ -1,4 +1,4 @@
-"""The cache of compiled kernels: a folder that can be written for each version, which old ones leave."""
+"""The cache of compiled kernels, and calls of kernels from compiled code and from Python."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ import pytest
 
 from riser_soil.core import compiled, kernel_cache
 from riser_soil.core.arrays import Array
+from riser_soil.core.compiled import njit
 
 DAY = 86400.0
 
@@ -137,3 +138,20 @@ def test_division_by_zero_is_no_crash() -> None:
         return a / b
 
     assert ratio(1.0, 0.0) == np.inf
+
+
+@njit
+def _twice(x: float) -> float:
+    return 2.0 * x
+
+
+@njit
+def _four_times(x: float) -> float:
+    doubled: float = _twice(_twice(x))
+    return doubled
+
+
+def test_what_kernels_call_may_be_called_from_python_too() -> None:
+    assert _four_times(1.5) == 6.0
+    assert [_twice(6.0), _twice(8), _twice(6.0)] == [12.0, 16.0, 12.0]
+    np.testing.assert_array_equal(_twice(np.array([1.0, 2.0])), [2.0, 4.0])

@@ -1,11 +1,11 @@
-"""What the ground takes in a step, apart from what the force at the step's end takes: closed forms and loop areas."""
+"""Steps in which the riser lands: first guess, and work of the ground by closed forms and loop areas."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from riser_soil.contact.along_step import work_along_step
+from riser_soil.contact.along_step import landing_predictor, work_along_step
 from riser_soil.contact.law import Penalty, SuctionLaw
 from riser_soil.contact.seabed_contact import SeabedContact
 from riser_soil.core.arrays import Array
@@ -138,3 +138,14 @@ def test_contact_with_soil_by_the_penalty_dissipates_nothing() -> None:
     own, by_scheme = pulled_off_soil(Penalty(STIFFNESS, 1e-3), 6)
     assert own == 0.0
     assert by_scheme > 1.0
+
+
+def test_a_node_is_lifted_to_its_present_depth_or_half_the_corner() -> None:
+    """Start of the force 0.2 m above the ground. Nodes: aloft; landing; lying deep, pressed deeper; rising."""
+    present, guessed = np.array([3.0, 1.0, -0.5, -0.5]), np.array([2.0, -0.7, -0.9, -0.3])
+    guess, heights = State.at_rest(0.0, 8), np.array([1, 3, 5, 7])
+    guess.u[:] = np.arange(8.0)
+    landed = landing_predictor(guess, heights, present, guessed, 0.2)
+    np.testing.assert_allclose((landed - guess.u)[heights], [0.0, 0.6, 0.4, 0.0], rtol=1e-14)
+    np.testing.assert_array_equal(landed[::2], guess.u[::2])
+    np.testing.assert_array_equal(guess.u, np.arange(8.0))
