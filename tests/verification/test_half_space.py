@@ -17,7 +17,7 @@ from riser_soil.soil.linear_elastic import LinearElastic
 from riser_soil.soil.soil import Soil
 from tests.support.pages import Tell
 from tests.support.soil_bench import assemble
-from tests.support.tet_slice import tet_slice
+from tests.support.strip import tet_slice
 
 E, NU = 1.0e6, 0.3
 G = 0.5 * E / (1.0 + NU)

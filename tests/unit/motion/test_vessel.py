@@ -22,10 +22,9 @@ from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
-from tests.support.rao_tables import EVERYWHERE, MODES, REFERENCE, surface, table
 from tests.support.said import lines_with, telling
 from tests.support.scenes import AIRY, JONSWAP, VESSEL_END, Mapping, below_vessel, dynamic, static
-from tests.support.seas import components_of
+from tests.support.seas import EVERYWHERE, MODES, REFERENCE, components_of, surface, table
 from tests.support.stage_histories import distance, stage_histories
 
 

@@ -18,9 +18,9 @@ from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.plane import resolved_dimension
 from riser_soil.scene.reader import read_scene, scene_from_mapping
 from riser_soil.scene.scene import Scene
-from tests.support.rao_tables import EVERYWHERE, REFERENCE, surface, table
 from tests.support.scenes import AIRY, VESSEL_END, Mapping, dynamic, prescribed, riser_scene
 from tests.support.scenes import below_vessel as at_sea
+from tests.support.seas import EVERYWHERE, REFERENCE, surface, table
 
 PIPE = {"EA": 1.0e8, "EI": 1.0e5, "GJ": 1.0e5, "mass": 50.0}
 HEADER = "t [s], surge [m], sway [m], heave [m], roll [deg], pitch [deg], yaw [deg]\n"
