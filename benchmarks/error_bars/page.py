@@ -133,7 +133,7 @@ Scene by scene in the calibration: [error_bars_scenes.csv](error_bars_scenes.csv
 
 ## Limits
 
-- Bars tell nothing of what is not varied: the model itself, a block of soil that is too small, a pipe with wrong
+- Bars do not cover what is not varied: the model itself, a block of soil that is too small, a pipe with wrong
   properties.
 - They are least reliable where a sudden load excites all modes; where longer steps resolve nothing they are far too
   wide more often than too narrow.
