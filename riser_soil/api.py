@@ -119,6 +119,6 @@ def _plain(data: Any) -> Any:
         return {str(key): _plain(value) for key, value in data.items()}
     if isinstance(data, (list, tuple)):
         return [_plain(value) for value in data]
-    if hasattr(data, "tolist"):  # of numpy
+    if hasattr(data, "tolist"):  # an array or number of numpy
         return data.tolist()
     return str(data) if isinstance(data, Path) else data

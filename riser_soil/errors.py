@@ -5,7 +5,7 @@ import re
 import signal
 
 LONGEST = 1200  # characters of a line of a message
-_FEW = 8  # of a long list that are named
+_FEW = 8  # items of a long list that are named
 _LIST = re.compile(rf"(?:[^,;:()]{{1,80}}, ){{{_FEW + 2},}}[^,;:()]{{1,80}}")
 
 

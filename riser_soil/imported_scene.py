@@ -14,7 +14,7 @@ from riser_soil.scene.problem import Path as KeyPath
 
 MOST_BYTES = 10_000_000
 _ORCAFLEX_BINARY = b"ORCAFLEX"  # near the beginning of its .dat files
-_TWIST = 1e-4  # of EA D^2: torsional stiffness of a line without bending stiffness
+_TWIST = 1e-4  # torsional stiffness of a line without bending stiffness, over EA D^2
 
 Remark = tuple[int, str]
 """Line of the file, and what of it the scene does not have."""

@@ -25,7 +25,7 @@ class _Pending:
     """Signals that this process has received and not yet handled."""
 
     def __init__(self) -> None:
-        self.number = 0  # of the signal not yet obeyed; 0 for none
+        self.number = 0  # number of the signal not yet obeyed; 0 for none
         self.busy = 0  # how many blocks forbid to leave now
         self.agreeing = False  # whether to leave between two steps alone, all ranks at the same one
         self.latest: Interruption | None = None

@@ -47,7 +47,7 @@ FINER_MESH_ON_SOIL = Variation("mesh", {"elements": 2.0, "penalty": 4.0})
 # Least number of steps in the shortest period, as the mesh has little effect with longer ones; least and largest ratio
 # of step sizes, and the ratio where nothing has a period.
 STEPS_OF_PERIOD, LONGER, LONGEST, USUAL = 20.0, 2.0, 4.0, 3.0
-LEAST_RATIO = 1.4  # of fineness of two runs whose difference is significant
+LEAST_RATIO = 1.4  # least ratio of fineness of two runs whose difference is significant
 # Errors that end a comparison run: those that all ranks raise together, and those that one may raise alone.
 OF_ALL, OF_ONE = (SolveError, MemoryShortageError, SceneError, MeshError), (ArithmeticError, ValueError)
 

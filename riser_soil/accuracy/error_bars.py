@@ -50,7 +50,7 @@ BY_SLICE = {"soil": 1.2}  # where the settlement's error is known by a slice
 SLICE, AT_REST, IN_MOTION = 1.4, 0.35, 1.8
 MOST_ENLARGED = 2.0  # largest factor on a difference by the slice's error; the factor where the slice fails
 LARGE = {"time": 0.05}  # difference of a coarser run, over the scale, whose divisor is half way to 1
-Values = Mapping[str, float]  # of key results by their keys, in their units
+Values = Mapping[str, float]  # values of key results by their keys, in their units
 
 
 @dataclass(frozen=True)

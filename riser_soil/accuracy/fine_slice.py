@@ -39,7 +39,7 @@ COARSEST = 0.5  # largest size of fine cells over the run's
 FIRST, DEEPER, STEPS = 1.25, 1.5, 3
 DEEPEST = 0.45  # to which a pipe is pressed, over the diameter
 STIFF = 1e3  # stiffness of the pipe over the soil's
-LENGTH = 0.2  # of the slice under the pipe, in diameters
+LENGTH = 0.2  # length of the slice under the pipe, in diameters
 FEW = 3.0  # cells along the riser of a block that has too few slices for one to be cheap
 
 

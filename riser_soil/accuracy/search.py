@@ -26,7 +26,7 @@ from riser_soil.variants.settings import HELPING, refined, resolved
 
 MOST_STATIC_RUNS = 3  # that grade the mesh
 LENGTH_RATIO = 1.5  # largest ratio of elements' lengths to those that curvature requires, of a graded mesh
-LONGER = Variation("time", {"time_step": 0.5})  # of the trial, whose steps are long already
+LONGER = Variation("time", {"time_step": 0.5})  # the trial's variation in time: its steps are long already
 ATTEMPTS, EACH = 3, 2.0  # runs of a scene that fails; ratio of elements and of steps from one to the next
 _Value = TypeVar("_Value")
 Envelopes = dict[str, CurveEnvelope]  # by line

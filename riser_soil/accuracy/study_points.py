@@ -20,10 +20,10 @@ from riser_soil.variants.runs_folder import Outcome
 from riser_soil.variants.variant import variant_of
 
 POINTS = "points"  # folder of the points' runs
-FINAL = (MeshError.exit_status, SolveError.exit_status)  # of failed runs that would fail again
-KEPT = (SUMMARY, SCENE)  # of a run's results; series and pictures go
-_PLACE = re.compile(rf"^.*/{re.escape(SCENE)}(:\d+)?: ")  # of a mistake, in the point's own scene file
-LETTERS = 12  # of a point's key, which make its name
+FINAL = (MeshError.exit_status, SolveError.exit_status)  # exit statuses of failed runs that would fail again
+KEPT = (SUMMARY, SCENE)  # files of a run that are kept; series and pictures are deleted
+_PLACE = re.compile(rf"^.*/{re.escape(SCENE)}(:\d+)?: ")  # place of a mistake in the point's own scene file
+LETTERS = 12  # letters of a point's key that make its name
 
 Factors = tuple[float, ...]
 """How many times as fine as the scene a point is, setting by setting."""
@@ -84,7 +84,7 @@ def point_outcome(factors: Factors, ended: Outcome, runs: Path) -> PointOutcome:
     """Outcome of a point whose run has ended."""
     try:
         summary = json.loads((runs / ended.name / SUMMARY).read_text(encoding="utf-8"))
-    except (OSError, ValueError):  # of a run that failed before its first step
+    except (OSError, ValueError):  # the run failed before its first step
         summary = {"stages": [], "processor_seconds": None}
     steps = sum(stage["steps"] for stage in summary["stages"])
     cpu = math.nan if summary["processor_seconds"] is None else summary["processor_seconds"]

@@ -21,7 +21,7 @@ from riser_soil.scene.stages import DynamicStage, Stage
 from riser_soil.sea.components import Components
 
 # Part of a mode's energy that waves beyond the table's frequencies may have, judged by its first and last rows, and the
-# part from which that is told.
+# share from which a warning is given.
 MOST_BEYOND, REPORTED_BEYOND = 0.01, 1e-3
 
 _Key = tuple[Path, Vector, float]

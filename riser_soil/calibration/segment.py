@@ -21,7 +21,7 @@ from riser_soil.stages import StatelessObserver, solve_stages
 from riser_soil.variants.variant import BaseScene
 
 TABLE = "path.csv"
-STEP = 1.0  # of the count that the table goes by
+STEP = 1.0  # step of the count by which the table is read
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,8 @@ from riser_soil.variants.variant import BaseScene, Overrides, Variant, variant_o
 
 MOST_CASES = 100_000
 MOST_LINES = 20
-_NONE = Variant("", "")  # of a case whose scene is not made yet
-_PLACE = "<case>"  # of a mistake, before it is known which cases have it
+_NONE = Variant("", "")  # variant of a case whose scene is not made yet
+_PLACE = "<case>"  # place of a mistake before it is known which cases have it
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ def read_cases(file: Path, overrides: Sequence[str] = ()) -> tuple[Cases, list[C
     """The cases of a file, all scenes checked; overrides: of the base scene. SceneError has one line per problem."""
     case_file = read_case_file(file)
     base = BaseScene.read(case_file.base, overrides, case_file.values, f"{file}: set")
-    cases, problems = [], dict[str, list[str]]()  # what is wrong, and of which cases
+    cases, problems = [], dict[str, list[str]]()  # problems, with the cases that have them
     for case in named_cases(file, axes_of(file, case_file, base.document)):
         try:
             cases.append(replace(case, variant=variant_of(base.with_values(case.values, _PLACE))))

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 HEADS = ("line type", "from m", "to m", "OD m", "ID m", "empty kg/m", "filled kg/m", "in air N/m", "in water N/m")
 STIFFNESSES = ("EA N", "EI N.m2")
-WORDS = {  # of parts, where an engineer has others
+WORDS = {  # words for parts, where an engineer has others
     "springs": "rotational springs at the ends",
     "contents": "internal flow",
     "morison": "drag and added mass",

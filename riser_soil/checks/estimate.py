@@ -37,7 +37,7 @@ WITHIN = 1.3  # memory is at most this many times the forecast, or the forecast 
 PER_NODE = PER_PICTURE = sum(output.numbers for output in ALONG_RISER)
 PER_STEP, PER_CELL = 60, 1 + sum(output.numbers for output in OF_SOIL)
 TENSOR = 9  # numbers, row by row
-COPIES = 2.0  # of each file while it grows
+COPIES = 2.0  # copies of each file while it grows
 # Seconds on one core: to lay an element out; of a step, and in it of an element, of an element and wave component, of a
 # cell in a section; of a step on condensed soil, and once of a cell and of the factor by unknowns squared.
 BUILD, STEP, ELEMENT, WAVE, CELL, FACTORED, ON_CONDENSED = 1.5e-4, 1.5e-3, 6e-5, 3e-7, 5e-5, 3e-9, 2e-2

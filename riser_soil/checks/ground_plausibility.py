@@ -32,7 +32,7 @@ MANY_CYCLES = 10
 LEAST_SUNK = 1e-6  # m: an end no deeper in the seabed lies on it
 # Points of each element that are looked at, and the part of a mesh's height by which its top may miss the seabed.
 POINTS, OFF_LEVEL = 20, 1e-3
-# Weight over what clay bears at its surface from which small strain is told of: V/(su D) = 1.3, an embedment of D/25.
+# Weight over what clay bears at its surface from which small strain is warned of: V/(su D) = 1.3, an embedment of D/25.
 SUNK_AT = 0.25
 
 

@@ -18,7 +18,7 @@ DISSIPATING = (
     *("morison", "structural damping", "contact", "seabed", "friction"),
     *("soil friction", "soil", "soil boundary", "new mesh", "cushion", "body drag", "body contact", "body friction"),
 )
-#: Accounts of a part that tells what is its own and what is the time scheme's.
+#: Accounts of a part that divides its own energy from the time scheme's.
 SPLIT = {
     "soil": ("soil_plasticity", "soil_time_scheme"),
     "seabed": ("seabed", "seabed_time_scheme"),
@@ -159,7 +159,7 @@ def _no_body_drag(scene: Scene) -> str:
     return "no body has drag" if scene.bodies and scene.water is not None else "no body is in water"
 
 
-#: Why parts of a line are left out, where they are: of the scene as the line sees it.
+#: Reasons why a line lacks parts, by the scene as the line sees it.
 LINE_REASONS: dict[str, Reason] = {
     "riser": "",
     "springs": "no end has a rotational spring",

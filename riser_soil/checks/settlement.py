@@ -34,7 +34,7 @@ from riser_soil.soil.law import SoilLaw
 # Cells of this part of the width that touches bear the pipe as the width itself does. (From 10 slices of elastic soil:
 # 1.4 to 2.1, see test_surface_contact.)
 LIKE_CONTACT = 1.75
-DEPTHS = 200  # of the integral over the depth
+DEPTHS = 200  # points of the integral over the depth
 # Simple shear up to half of the strength: the first increment, of the strain at which elastic soil would be there; each
 # that much longer than the one before; at most so many.
 FIRST, GROWTH, STEPS = 0.02, 1.05, 200

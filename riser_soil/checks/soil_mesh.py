@@ -10,7 +10,7 @@ from riser_soil.assembly import LineAssembly
 from riser_soil.scene.soil_layers import boundaries
 from riser_soil.soil.quality import POOR, quality_of
 
-# Aspect ratios above which cells are told of: hexahedra may be long along the riser, thin tetrahedra make errors.
+# Aspect ratios above which cells are warned of: hexahedra may be long along the riser, thin tetrahedra make errors.
 LONG_HEXAHEDRA, THIN_TETRAHEDRA = 1000.0, 30.0
 ACROSS = 1e-6  # part of a cell's height by which it may reach over a boundary
 

@@ -13,7 +13,7 @@ from riser_soil.commands.results import fatigue, film, plot, report, stiffness
 from riser_soil.commands.run import check, modes, run, schema
 from riser_soil.commands.statistics import histories, statistics
 
-PRINTING = (schema, statistics, histories, stiffness)  # what they print is their result
+PRINTING = (schema, statistics, histories, stiffness)  # commands whose output is their result
 app = typer.Typer(
     help="Static and dynamic analysis of a riser on the seabed.",
     epilog="Exit status: 0 done, 2 bad input, 3 the solve failed, 4 the disk or standard output took no more, "

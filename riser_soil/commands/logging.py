@@ -24,7 +24,7 @@ LogFile = Annotated[
     typer.Option("--log-file", metavar="FILE", help="also write all output to this file, with times; appends"),
 ]
 _OPTIONS = {"quiet": (Quiet, False), "log_file": (LogFile, None)}
-_WARNING, _NEWS = "warning: ", "compiling kernels"  # what is told nevertheless, and what is no error
+_WARNING, _NEWS = "warning: ", "compiling kernels"  # messages of quiet runs, and news that are no error
 _DRAWN = re.compile(r".*(?:\r|\x1b\[[0-9;]*[ABKJ])")  # a progress line that has been drawn over
 _STYLE = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 

@@ -18,7 +18,7 @@ from riser_soil.errors import SolveError
 from riser_soil.material.path import shear_path
 from riser_soil.material.point import MaterialPoint, drive
 
-CYCLES, ROWS = 14, 40  # of one amplitude; rows from turn to turn
+CYCLES, ROWS = 14, 40  # cycles of one amplitude; rows from turn to turn
 HELD = 0.03  # shear strain at the top of the cycles of strain
 AMPLITUDES = tuple(10.0 ** (0.5 * k) for k in range(-6, -3))
 LOW, HIGH = 0.1, 0.7  # of the stress at that strain, between which cycles of stress go

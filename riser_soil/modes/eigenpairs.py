@@ -23,7 +23,7 @@ from riser_soil.solve.direct_solver import use_mumps
 
 SPARE = 10  # modes beyond those asked for, on which the part of K that is not symmetric is tried, too
 FEW = 300  # dofs with mass, up to which the problem is a dense one
-SEED = 1  # of the vector that the search begins with
+SEED = 1  # seed of the vector that the search begins with
 ROUND_OFF = 1e-12  # of the largest entry: a matrix that misses symmetry by less is symmetric
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from riser_soil.moordyn.names import SECTIONS, Section, plain
 
-MOST_WORDS = 3  # of a heading, as in "Unstr. Len"
+MOST_WORDS = 3  # words of a heading, as in "Unstr. Len"
 
 
 def columns_of(section: str, headings: Sequence[str]) -> tuple[list[str | None], list[str]] | None:

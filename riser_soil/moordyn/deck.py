@@ -223,7 +223,7 @@ def _row(
     if len(names) > len(words) == len(newest) and not any(
         as_number(word) != 0.0 for known, name, word in zip(names, newest, words, strict=False) if known != name
     ):
-        cells = dict(zip(newest, words, strict=True))  # what other columns would have is 0 anyway
+        cells = dict(zip(newest, words, strict=True))  # other columns would be 0 anyway
     lacking = [name for name in names[len(words) :] if name is not None and name not in {*table.optional, *cells}]
     if lacking:
         problem = f"{len(words)} entries, where a row of {section.upper()} has {len(names)}"

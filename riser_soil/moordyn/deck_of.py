@@ -21,7 +21,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.seabed import SpringSeabed
 
 _SAME_ARC = 1e-9  # of the riser's length
-_DAMPING = -0.8  # of MoorDyn's own time steps: axial, over the critical one of an element
+_DAMPING = -0.8  # axial damping for MoorDyn's time steps, over an element's critical one
 _STEP = 0.5  # over the time of the fastest element's own motion, 1/w; a step of explicit schemes is stable to about 2
 _HAS = re.compile(
     r"title|gravity|water\.(density|surface_level|depth)|line_types\.[^.]*\.(outer_diameter|mass|EA|EI\w*)"
@@ -30,7 +30,7 @@ _HAS = re.compile(
     r"|riser\.contents\.density|riser\.(start|end)(\.position)?"
     r"|seabed\.(kind|stiffness|level)|contact\.friction\.(axial|lateral)|stages\.\d+\.(name|kind)"
 )
-_SETTINGS = ("output", "solver", "dimension", "error_bars")  # of a run
+_SETTINGS = ("output", "solver", "dimension", "error_bars")  # keys of a run, not of a model
 _WHY = {
     r"line_types\..*\.damping": "structural damping; BA is axial alone",
     r"line_types\..*\.GJ": "a deck has no torsion",

@@ -23,7 +23,7 @@ from riser_soil.moordyn.properties import net_weight, type_of
 from riser_soil.moordyn.riser_of import length_of
 from riser_soil.riser.catenary import Catenary, catenary
 
-BARS = 60  # of each cable
+BARS = 60  # bars of each cable
 STEP = 1e-5  # of a line's length: between forces of which a difference is the stiffness
 ENOUGH = 1e-4  # of the largest force of a line: what is at rest
 MOST = 30  # steps of Newton's method

@@ -22,7 +22,7 @@ _WITHOUT_EFFECT = re.compile(
     r"|jacobian.*|implicit.*|explicit.*|innertimestep|outertimestep|numericaldamping.*"
     r"|statics(step[12]|min|max|damping|tol).*|linestaticsstep[12]policy|wholesystemstatics.*|buoysincludedinstatics"
     r"|wavecalculation(time|spatial)interval"
-    # of which end lines are told; the wind beside its speed; water where no drag goes by Reynolds's number
+    # the end from which lines are described; the wind beside its speed; water where no drag goes by Reynolds's number
     r"|topend|wind(type|ramping|direction|timeorigin)|include.*windloads|air.*|verticalwind.*|kinematicviscosity"
     r"|seatemperature|reynoldsnumbercalculation"
     # a level seabed's origin and direction, what OrcaFlex checks of stresses

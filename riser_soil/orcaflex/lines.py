@@ -231,7 +231,7 @@ def _rotation(end: LineEnd, lower: LineEnd, upper: LineEnd, clamp: float) -> dic
     """
     row = end.stiffness
     for key in ("ConnectionAzimuth", "ConnectionDeclination", "ConnectionGamma"):
-        end.connection.get(key)  # of no effect on a hinge
+        end.connection.get(key)  # without effect on a hinge
     if row is None:
         return {}
     size, across = _joint_stiffness(row), row.word("ConnectionyBendingStiffness")

@@ -50,7 +50,7 @@ def _seabed(environment: Item, diameter: float, g: float) -> dict[str, Any]:
         environment.left("SeabedShearStiffness", "SeabedShearStiffness: friction takes effect over D/30 here")
     other = [key for key in environment.values if "soil" in key] if kind in _SPRINGS else ["SeabedNormalStiffness"]
     for key in other:
-        environment.get(key)  # of the other model, without effect
+        environment.get(key)  # belongs to the other model: without effect
     if _BY_LAW.fullmatch(kind):
         return {"kind": "hysteretic", "law": _law(environment, g)} | place
     if kind not in _SPRINGS:

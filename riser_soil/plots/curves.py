@@ -48,7 +48,7 @@ _REACTIONS = {
 }
 ARC, TIME = "arc length from end A [m]", "time [s]"
 PAGE = 6.7  # in, width of the text on A4: pictures of this width are printed as large as they are
-STYLE: dict[str, Any] = {  # of pictures of this width; "small" is 7.5 pt then, the least that reads well on paper
+STYLE: dict[str, Any] = {  # style of pictures of this width; "small" is 7.5 pt then, the least that reads well on paper
     "font.size": 9.0, "axes.labelsize": 8.5, "axes.titlesize": 9.0, "xtick.labelsize": 8.0, "ytick.labelsize": 8.0,
     "legend.fontsize": 7.5, "axes.spines.top": False, "axes.spines.right": False, "lines.linewidth": 1.2,
 }  # fmt: skip

@@ -16,7 +16,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.plots.curves import ARC, PAGE, STYLE, save, sheet
 
 LineMoved = tuple[Array, Array, Array]  # arc (nn,), position (nn, 3) at rest [m], displacements (n, nn, 3)
-STYLES = ("-", "--", ":", "-.")  # of lines in turn
+STYLES = ("-", "--", ":", "-.")  # line styles, in turn
 WITHIN: dict[str, Any] = {"fontsize": 7.5, "loc": "upper right"}  # legends: within the panel, of many curves above it
 ABOVE: dict[str, Any] = {
     "fontsize": 7.5, "loc": "lower right", "bbox_to_anchor": (1.0, 0.98), "ncols": 9, "columnspacing": 0.8,

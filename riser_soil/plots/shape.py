@@ -17,7 +17,7 @@ from riser_soil.results.cycles import cycles, period_of
 from riser_soil.results.stage_records import StageRecords, along
 from riser_soil.scene.bathymetry import ground_height
 
-SNAPSHOTS = 9  # of one cycle
+SNAPSHOTS = 9  # snapshots of one cycle
 _MOVES = 1e-6  # of the riser's length: what moves by less is at rest
 _ASIDE = 0.002  # of the riser's length: what goes out of the plane less is not drawn from above
 _ZONE = 0.06  # of the riser's length: to either side of the touchdown point

@@ -23,7 +23,7 @@ _REACTIONS = (  # path below an end, words, unit, how many of it are one of SI
     ("angle_deg", "angle from the vertical", "°", 1.0),
 )
 _SPOKEN = {"bodies": "body", "joints": "joint", "clearance": "clearance"}
-_OF_HUNG = {  # of bodies, joints and clearances
+_OF_HUNG = {  # rows of bodies, joints and clearances
     "bodies": {
         "position": Row("position", "m"),
         "rotation": Row("rotation", "°", math.degrees(1.0)),

@@ -24,7 +24,7 @@ _SOIL = {
     "max_strength_used": "maximum share of the strength used",
     "max_equivalent_plastic_strain": "maximum plastic strain",
 }
-_SOURCES = {  # of energy, by the names of parts
+_SOURCES = {  # sources of energy, by the names of parts
     "morison": "drag and inertia forces of the water",
     "supports": "motions of the ends",
     "seabed": "the seabed",

@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from riser_soil.report.parameters import GROUND_WORDS, in_words
 from riser_soil.report.tables import given_value, number
 
-_UNITS = {  # of the scene language: unit of the field, how many of it are one
+_UNITS = {  # units of the scene language: unit of the field, and how many of it are one
     "Pa": ("MPa", 1e-6),
     "N": ("kN", 1e-3),
     "N/m2": ("kN/m²", 1e-3),

@@ -30,7 +30,7 @@ from riser_soil.report.tables import BREAK
 
 _MARGIN, _TEXT = Mm(20), Mm(170)
 _WIDE = 7  # columns, from which on a table has smaller letters
-_LETTER = 0.68  # of the size of letters: width of most
+_LETTER = 0.68  # width of most letters over their size
 _ACCENT, _WARN = RGBColor(0x1F, 0x4F, 0x79), RGBColor(0x8A, 0x4B, 0x00)
 
 

@@ -17,7 +17,7 @@ from riser_soil.scene.files import content, wrong_file
 from riser_soil.scene.problem import hint, shown
 
 Units = Mapping[str, float]
-LEAST_ROWS = 4  # of a cubic spline without knots beside its ends
+LEAST_ROWS = 4  # rows that a cubic spline without knots beside its ends needs
 COUNT = "-"  # the unit of a t that is no time
 
 

@@ -104,7 +104,7 @@ def _item_types(kind: Any, index: int) -> tuple[Any, ...]:
 class Failure:
     """One error of the models, seen from the scene."""
 
-    location: Path  # as the models give it, alternatives' tags included
+    location: Path  # path as the models give it, with alternatives' tags
     data: Any
     context: dict[str, Any]
     root: type[BaseModel] = Scene

@@ -28,7 +28,7 @@ _IN_RESULTS = (
 )
 _IN_MODES = ("mode", "direction", "frequency", "period", "share")
 _RESERVED = frozenset((*_FILES, *_IN_RESULTS, *_IN_MODES))
-_OF_LEDGER = ("dissipated_", "work_")  # of parts
+_OF_LEDGER = ("dissipated_", "work_")  # beginnings of the names of a part's energies
 _OF_STAGE = ("move", "motion", "loads")
 _ORIGIN = (0.0, 0.0, 0.0)
 _ALONG = ((0.0, 1.0, 0.0), (1.0, 0.0, 0.0))  # a plane, by the axis across it

@@ -17,11 +17,11 @@ from riser_soil.scene.size import LINES, Doubt, Size, amount_of, meant, number_o
 
 GRAVITY = 9.81
 DIAMETER = Size(0.001, 2.5, "m", {"mm": 1e-3, "inches": 0.0254, "cm": 1e-2})
-DENSITY = Size(100.0, 2e4, "kg/m3")  # of all that has a cross-section
-FLOAT = Size(100.0, 1200.0, "kg/m3")  # of a section with buoyancy
+DENSITY = Size(100.0, 2e4, "kg/m3")  # anything with a cross-section
+FLOAT = Size(100.0, 1200.0, "kg/m3")  # a section with buoyancy
 BODY_DENSITY = Size(10.0, 5e4, "kg/m3")  # from an empty float to what carries more than its own volume
-STEEL_DENSITY = Size(6500.0, 1e4, "kg/m3")  # of a wall with the modulus of steel; it may be lined or coated
-STEEL = Size(7500.0, 8200.0, "kg/m3")  # of a wall with a bore that is steel, surely
+STEEL_DENSITY = Size(6500.0, 1e4, "kg/m3")  # a wall with the modulus of steel; it may be lined or coated
+STEEL = Size(7500.0, 8200.0, "kg/m3")  # a steel wall with a bore
 STEEL_MODULUS = Size(1.9e11, 2.2e11, "Pa")
 METAL = Size(6e10, 2.6e11, "Pa")  # moduli of aluminium, titanium and steel
 SHEAR = Size(2e10, 1.1e11, "Pa")  # shear moduli of these

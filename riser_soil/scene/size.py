@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from riser_soil.scene.problem import Path
 
-LARGEST = 1e100  # of any number that is looked at
+LARGEST = 1e100  # largest number that is checked
 UNKNOWN = "in another unit"
 LINES = (("riser",), ("lines", "*"))  # where a scene has its lines
 

@@ -19,7 +19,7 @@ _MOST_DIRECTIONS = 36
 Seed = Annotated[int, Field(strict=True, ge=0)]
 Components = Annotated[Count, Field(le=MOST_COMPONENTS)]
 _TOWARD = "direction towards which it travels, from x towards y [deg]"
-_STEPS = 4096  # of the half circle, by the trapezoidal rule
+_STEPS = 4096  # steps over the half circle, by the trapezoidal rule
 
 
 class Spreading(BaseModel):

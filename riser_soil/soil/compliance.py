@@ -34,7 +34,7 @@ from riser_soil.soil.soil import Soil
 AT_ONCE = 16  # nodes whose columns are solved for in one call
 HELD = 1 << 28  # bytes of columns in memory, where they can't be kept on disk; others are solved for again
 SAME_ROW = 1e-6  # of the top's longer side: how far points of a row are apart across it
-FORMAT = 1  # of the files, and of how columns are found and grouped
+FORMAT = 1  # number of the files' format, and of how columns are computed and grouped
 SWITCH = "RISER_SOIL_COMPLIANCE"
 MOST = 1 << 30  # bytes of all files; soils that were not asked for longest go first
 LEFT = 1 << 30  # bytes of the disk that stay free

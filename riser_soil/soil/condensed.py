@@ -141,7 +141,7 @@ class CondensedTop:
         return self._soil.surface.describe(entry)
 
 
-SoilSurface = SoilTop | CondensedTop  # as contact sees it
+SoilSurface = SoilTop | CondensedTop  # the soil's surface as contact uses it
 
 
 class CondensedSoil:

@@ -30,7 +30,7 @@ from riser_soil.soil.surface import SoilTop
 BESIDE = 1.001  # radii of a simplex about its middle, within which it may hold a place
 FLAT = 1e-12  # of a simplex' size: a volume that is none
 
-TETRAHEDRA = {  # of a cell, by its nodes
+TETRAHEDRA = {  # tetrahedra of a cell, by its nodes
     10: (
         *((0, 9, 8, 7), (1, 9, 6, 5), (2, 8, 6, 4), (3, 7, 5, 4)),
         *((9, 4, 8, 7), (9, 4, 7, 5), (9, 4, 5, 6), (9, 4, 6, 8)),

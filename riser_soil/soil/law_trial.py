@@ -20,7 +20,7 @@ from riser_soil.soil.law_source import LawError
 from riser_soil.soil.own_formula import OwnFormula, at_point, infinite
 
 POINTS = 6
-SIZES = (1e-5, 1e-4, 1e-3, 1e-2)  # of the strain
+SIZES = (1e-5, 1e-4, 1e-3, 1e-2)  # sizes of the strain
 STEPS = (1e-3, 1e-5)  # of differences, over the increment: at a kink of the stress one of them may lie across it
 OFF, UNSYMMETRIC, SAME = 1e-4, 1e-6, 1e-6
 ZERO_MODULUS = 1e-12  # a modulus below this share of their sum counts as zero
@@ -47,7 +47,7 @@ def try_out(make: Make, depth: Array, initial: Array) -> None:
     at = at[make(depth[at], initial[at]).overstress(initial[at]) <= 1.0]
     if not at.size:
         return
-    with np.errstate(all="ignore"):  # what is not finite is told as such
+    with np.errstate(all="ignore"):  # values that are not finite get a message of their own
         _begins_at_rest(make(depth[at], initial[at]))
         each = np.repeat(at, len(_MOVES))
         law = make(depth[each], initial[each])

@@ -15,7 +15,7 @@ from riser_soil.results.read import Run
 
 FEWEST = 20  # records that statistics take
 COMPONENTS = {"x": 0, "y": 1, "z": 2}
-SIZE = "size"  # of a vector
+SIZE = "size"  # component name for a vector's size
 
 
 class Records(NamedTuple):

@@ -13,7 +13,7 @@ from scipy.signal import welch
 
 from riser_soil.core.arrays import Array, IntArray
 
-SEGMENTS = 8  # of the record, by which its spectrum is averaged, half over each other
+SEGMENTS = 8  # pieces of a record, overlapping by half, over which its spectrum is averaged
 
 
 class Spectrum(NamedTuple):

@@ -51,7 +51,7 @@ def outcomes_by_dask(tasks: Sequence[Task], scheduler: str, begin: Callable[[], 
                 f"--scheduler {scheduler}: does not answer any more; call again to go on: cases that are done are kept"
             ) from err
         finally:
-            with suppress(OSError, CancelledError):  # of a scheduler that is lost
+            with suppress(OSError, CancelledError):  # the scheduler is lost
                 client.cancel(list(futures), force=True)
 
 

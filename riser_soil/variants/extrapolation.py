@@ -11,7 +11,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-LEAST_ORDER, MOST_ORDER = 0.4, 8.0  # of three values whose order counts as observed
+LEAST_ORDER, MOST_ORDER = 0.4, 8.0  # orders of three values that count as observed
 LEAST_UNCERTAINTY = 0.3  # of the last correction: two extrapolations may agree by chance
 
 

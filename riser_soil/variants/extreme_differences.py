@@ -31,7 +31,7 @@ class Extreme(NamedTuple):
     least: bool = False
 
 
-Extremes = Mapping[str, Extreme]  # of key results by their keys, in their units
+Extremes = Mapping[str, Extreme]  # extremes of key results by their keys, in their units
 
 
 def extremes_of(peaks: RunPeaks) -> dict[str, Extreme]:

@@ -29,7 +29,7 @@ Task = dict[str, Any]
 
 POLL, GRACE = 0.05, 20.0  # s between two looks at a run; s that one has to end in order
 NOT_WANTED = 128 + signal.SIGTERM
-STOPPED_BY_LIMIT = 124  # as of timeout(1)
+STOPPED_BY_LIMIT = 124  # the status of timeout(1)
 
 
 def task(
@@ -83,7 +83,7 @@ def _computed(task: Task, wanted: Callable[[], bool]) -> Outcome:
         reason = _last_words(process.returncode, made / PRINTED).replace(str(made), str(runs / task["name"]))
     seconds = time.monotonic() - since
     outcome = Outcome(task["name"], task["key"], status, reason, seconds, socket.gethostname(), task["alone"])
-    if status == WriteError.exit_status:  # what it has written would fill the disk
+    if status == WriteError.exit_status:  # its files would fill the disk
         shutil.rmtree(made, ignore_errors=True)
         return outcome
     if stopped == NOT_WANTED:

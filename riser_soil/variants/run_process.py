@@ -11,7 +11,7 @@ import os
 import signal
 import sys
 
-_PR_SET_PDEATHSIG = 1  # of Linux: prctl(2); what it sets outlives execve(2)
+_PR_SET_PDEATHSIG = 1  # Linux's prctl(2); it outlives execve(2)
 
 
 def die_with(parent: int) -> None:

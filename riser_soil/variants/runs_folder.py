@@ -22,7 +22,7 @@ from riser_soil.results.whole_file import refuse_file, unusable
 
 ATTEMPTS = ".attempts"
 _FORMER = ".former"
-OUTCOME, PRINTED = "case.json", "said.txt"  # of a run: how it ended, and its screen output
+OUTCOME, PRINTED = "case.json", "said.txt"  # files of a run: how it ended, and its screen output
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ from riser_soil.scene.soil import CellSizes, GeneratedMesh, MeshFile
 from riser_soil.scene.stages import DynamicStage, Stage
 
 HELPING = ("elements", "time_step")  # names of settings that are refined where a scene fails
-LOCAL_ORDER = 3  # of the local error of automatic steps in their size
+LOCAL_ORDER = 3  # order of the local error of automatic steps in their size
 FIRM = 50.0  # firm penalty over the automatic one on soil: penetration is 2e-4 of a settlement, not 1e-2
 
 

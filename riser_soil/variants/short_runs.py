@@ -15,7 +15,7 @@ from riser_soil.variants.pool import Workers, outcomes
 from riser_soil.variants.runs_folder import Outcome, prepare_attempts
 from riser_soil.variants.variant import variant_of
 
-STEPS, AUTO_STEP = 2, 0.1  # of each time stage; s, where steps choose their size
+STEPS, AUTO_STEP = 2, 0.1  # steps of each time stage; step [s] where steps choose their size
 
 
 def compile_kernels(scenes: Mapping[str, Scene], jobs: int) -> Iterator[Outcome]:

@@ -76,7 +76,7 @@ def variant_of(scene: Scene) -> Variant:
     text = dump_scene(scene)
     digest = hashlib.sha256(f"{__version__}\n{text}".encode())
     for _, at in paths_in(scene):
-        file = at / CHECKPOINT if at.is_dir() else at  # of a run with whose end the variant begins
+        file = at / CHECKPOINT if at.is_dir() else at  # checkpoint of the run with whose end the variant begins
         if file.is_file():
             digest.update(_digest(file, file.stat().st_mtime_ns))
     return Variant(text, digest.hexdigest())
