@@ -32,7 +32,7 @@ FIRST_STEP = 0.1  # largest relative length of the first step
 
 
 @dataclass(frozen=True)
-class FoundEnd:
+class SolvedEnd:
     """Solved end. value: its coordinate or length [m]. reached: angle [deg] or tension [N] of the riser there."""
 
     hung: HungEnd
@@ -58,7 +58,7 @@ class HungScene:
     """The scene with solved hang-offs. solves: number of static solves."""
 
     scene: Scene
-    ends: tuple[FoundEnd, ...]
+    ends: tuple[SolvedEnd, ...]
     solves: int
 
     @property
@@ -113,7 +113,7 @@ class _HangOffSearch:
             raise self._failure()
         ends = zip(self._ends, as_list(values), as_list(self._asked + residual * self._tolerance), strict=True)
         scene = settled(self._ends, as_list(values))
-        return HungScene(scene, tuple(FoundEnd(*each) for each in ends), len(self._evaluated))
+        return HungScene(scene, tuple(SolvedEnd(*each) for each in ends), len(self._evaluated))
 
     def _shifted(self, values: Array, residual: Array) -> list[Array]:
         """The values, and those of cables with shifted aims, where there are such cables."""

@@ -411,7 +411,7 @@ def _load_steps(assembly: Assembly, stage: Stage, t0: float, t1: float) -> int:
 
 def _path_steps(assembly: Assembly, stage: QuasiStaticStage) -> PathSteps:
     """Steps from corner to corner of a quasi-static stage: at most as long as asked for, or as many as load steps."""
-    by_line = [(own, each) for own, each in assembly.seen_by_lines(stage) if isinstance(each, QuasiStaticStage)]
+    by_line = [(own, each) for own, each in assembly.stages_by_line(stage) if isinstance(each, QuasiStaticStage)]
     ends = (t for own, each in by_line for t in corners(own.scene, each))
     times, longest = [0.0, *from_last_to_first(stage.duration, ends)[::-1]], stage.time_step
     if longest == "auto":
@@ -432,7 +432,7 @@ def steps_of(assembly: Assembly, stage: Stage, stepper: TimeStepper) -> StepCont
     if stage.time_step == "auto":
         tolerance = assembly.error_tolerance(stage)
         first = first_step(stepper.system, stepper.now, tolerance)
-        by_line = [(own, each) for own, each in assembly.seen_by_lines(stage) if isinstance(each, DynamicStage)]
+        by_line = [(own, each) for own, each in assembly.stages_by_line(stage) if isinstance(each, DynamicStage)]
         hit = [t for own, each in by_line for t in times_to_hit(own.scene, each)]
         return AutoSteps(stage.duration, tolerance, smallest, first, hit)
     return StepControl(stage.duration, stage.time_step, smallest)

@@ -63,10 +63,10 @@ def run(
             print(f"warning: {warning}")
         opened = Observer.open(assembly, clock, folder, force, peaks, saved is not None, warnings)
         with agreeing(comm), opened as observer:
-            _take_all(assembly, observer, clock, saved)
+            _solve_stages(assembly, observer, clock, saved)
 
 
-def _take_all(assembly: Assembly, observer: Observer, clock: RunClock, saved: Saved | None) -> None:
+def _solve_stages(assembly: Assembly, observer: Observer, clock: RunClock, saved: Saved | None) -> None:
     stages: Sequence[Stage] = assembly.scene.stages
     try:
         with unmasked():

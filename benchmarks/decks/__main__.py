@@ -18,7 +18,7 @@ from dataclasses import asdict
 from itertools import chain, groupby
 from pathlib import Path
 
-from benchmarks.decks.survey import Found, survey
+from benchmarks.decks.survey import Survey, survey
 from benchmarks.peers.in_turn import ROOT, THEIRS
 from demos.page import publish, table
 
@@ -28,7 +28,7 @@ LONGEST = 160  # characters of a reason
 WITHOUT_TENSION = "its tension is 0 there"
 
 
-def verdict(deck: Found) -> str:
+def verdict(deck: Survey) -> str:
     """A deck's outcome in a few words."""
     if deck.outcome != "scene":
         return deck.outcome
@@ -41,12 +41,12 @@ def verdict(deck: Found) -> str:
     return "differs, with a warning" if deck.warnings else "DIFFERS"
 
 
-def summary(decks: Sequence[Found]) -> str:
+def summary(decks: Sequence[Survey]) -> str:
     counts = Counter(verdict(each) for each in decks)
     return table(["what becomes of it", "lines and decks"], [[word, str(n)] for word, n in counts.most_common()])
 
 
-def sources(known_decks: Sequence[Found], folder: Path) -> str:
+def sources(known_decks: Sequence[Survey], folder: Path) -> str:
     rows = []
     for repository, group in groupby(known_decks, key=lambda each: each.repository):
         decks = len({each.deck for each in group})
@@ -59,7 +59,7 @@ def _commit(clone: Path) -> str:
     return done.stdout.strip()[:10] or "-"
 
 
-def all_rows(decks: Sequence[Found]) -> str:
+def all_rows(decks: Sequence[Survey]) -> str:
     rows = []
     for each in decks:
         name = f"{each.repository}: {each.deck}" + (f", `--line {each.line}`" if each.line else "")
@@ -68,7 +68,7 @@ def all_rows(decks: Sequence[Found]) -> str:
     return table(["deck", "outcome", "remarks", "top tension kN", "catenary kN", "difference %"], rows)
 
 
-def _words(each: Found) -> str:
+def _words(each: Survey) -> str:
     """The outcome, and why: words of the refusal, of what warns where it differs, or of why there is no catenary."""
     word = verdict(each)
     no_catenary = each.why_no_reference or WITHOUT_TENSION
@@ -82,7 +82,7 @@ def _kN(value: float | None) -> str:
     return "-" if value is None else f"{value / 1e3:.5g}"
 
 
-def _percent(each: Found) -> str:
+def _percent(each: Survey) -> str:
     return "-" if each.difference is None else f"{100 * each.difference:.2f}"
 
 
@@ -108,16 +108,16 @@ def main() -> None:
     publish(blocks, asked.results, PAGE if asked.page else None)
 
 
-def _survey_into(log: Path, groups: Iterable[list[Found]]) -> None:
+def _survey_into(log: Path, groups: Iterable[list[Survey]]) -> None:
     with log.open("w", encoding="utf-8") as rows:
         for each in chain.from_iterable(groups):
             print(json.dumps(asdict(each)), file=rows, flush=True)
             print(verdict(each), each.repository, each.deck, each.line, file=sys.stderr, flush=True)
 
 
-def _read(row: str) -> Found:
+def _read(row: str) -> Survey:
     given = json.loads(row)
-    return Found(**given | {"warnings": tuple(given["warnings"])})
+    return Survey(**given | {"warnings": tuple(given["warnings"])})
 
 
 if __name__ == "__main__":

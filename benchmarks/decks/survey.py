@@ -32,7 +32,7 @@ HERE = Path(__file__).parent
 
 
 @dataclass(frozen=True)
-class Found:
+class Survey:
     """A riser of a deck, or the whole of one, and what became of it. tension, reference: at the top [N].
 
     line: as `import` takes it; empty for the line that it takes by itself. bends: a line of its scene has bending
@@ -77,7 +77,7 @@ def decks_below(folder: Path, without: Sequence[str] = ()) -> Iterator[Path]:
 
 def survey(
     folder: Path, work: Path, python: str, without: Sequence[str] = (), workers: int = 1
-) -> Iterator[list[Found]]:
+) -> Iterator[list[Survey]]:
     """All that is found of each deck, a list for each, in their order. python: an interpreter that has moorpy. workers:
     decks at a time.
     """
@@ -88,7 +88,7 @@ def survey(
         yield from pool.map(lambda deck, place: _of_deck(folder, deck, place, python), decks, places)
 
 
-def _of_deck(folder: Path, deck: Path, work: Path, python: str) -> list[Found]:
+def _of_deck(folder: Path, deck: Path, work: Path, python: str) -> list[Survey]:
     """The line that `import` takes by itself; the whole deck, where that is refused or other lines and something free
     may act on it; some of the others, where the whole is refused.
     """
@@ -112,7 +112,7 @@ def _other_lines(place: Path) -> list[str]:
     return re.findall(r"--line (\w+) imports", _output(place / "import"))
 
 
-def _others(deck: Path, name: tuple[str, str], work: Path) -> Iterator[Found]:
+def _others(deck: Path, name: tuple[str, str], work: Path) -> Iterator[Survey]:
     """Decks of the lines that neither the first riser has nor one that came before."""
     remaining = _other_lines(work / "first")
     for _ in range(MOST_OTHERS):
@@ -124,26 +124,26 @@ def _others(deck: Path, name: tuple[str, str], work: Path) -> Iterator[Found]:
         remaining = [each for each in remaining if each in others] if others else remaining
 
 
-def _of_line(deck: Path, name: tuple[str, str], line: str, work: Path) -> Found:
+def _of_line(deck: Path, name: tuple[str, str], line: str, work: Path) -> Survey:
     place = work / (line or "first")
     asked = ["--line", line] if line else []
     imported = _command(place / "import", ["import", str(deck), "-o", "scene.yaml", "--force", *asked])
     remarks, said = imported.output.count("not carried over: "), _reason(imported)
     if not imported.well:
-        return Found(*name, line, imported.word, said)
+        return Survey(*name, line, imported.word, said)
     if not imported.finished:
-        return Found(*name, line, "refused", said)
+        return Survey(*name, line, "refused", said)
     scene = str(place / "import" / "scene.yaml")
     warnings = tuple(row for row in imported.output.splitlines() if row.startswith("warning:"))
     static = "stages=[{name: hang, kind: static}]"
     run = _command(place / "run", ["run", scene, "-o", "out", "--force", "--set", static])
     if not run.finished:
         outcome = "no solution" if run.well else run.word
-        return Found(*name, line, outcome, _reason(run), remarks, warnings)
+        return Survey(*name, line, outcome, _reason(run), remarks, warnings)
     known = tuple(re.sub(r"^warning: \S+:\d+: ", "warning: ", row) for row in warnings)
     warnings += tuple(row for row in run.output.splitlines() if row.startswith("warning:") and row not in known)
     bends = any(float(EI) > 0.0 for EI in re.findall(r"\bEI: ([-+.\deE]+)", Path(scene).read_text(encoding="utf-8")))
-    return Found(*name, line, "scene", "", remarks, tuple(dict.fromkeys(warnings)), bends=bends)
+    return Survey(*name, line, "scene", "", remarks, tuple(dict.fromkeys(warnings)), bends=bends)
 
 
 def _command(place: Path, arguments: list[str]) -> Ending:
@@ -178,7 +178,7 @@ def _by_moorpy(deck: Path, python: str) -> dict[str, Any]:
         return {"held": f"MoorPy: {type(trouble).__name__}", "free": f"MoorPy: {type(trouble).__name__}"}
 
 
-def _beside(deck: Found, reference: dict[str, Any], work: Path) -> Found:
+def _beside(deck: Survey, reference: dict[str, Any], work: Path) -> Survey:
     if deck.outcome != "scene":
         return deck
     folder = work / (deck.line or "first") / "run" / "out"
@@ -188,10 +188,10 @@ def _beside(deck: Found, reference: dict[str, Any], work: Path) -> Found:
     tension, place = final["end"]["effective_tension"], final["end"]["position"]
     lines = reference.get("held", "none")
     if isinstance(lines, str):
-        return Found(**asdict(deck) | {"tension": tension, "why_no_reference": lines})
+        return Survey(**asdict(deck) | {"tension": tension, "why_no_reference": lines})
     closest = _at_top(lines, place, tension)
     why = "" if closest is not None else f"no line of MoorPy's has its top at {place}"
-    return Found(**asdict(deck) | {"tension": tension, "reference": closest, "why_no_reference": why})
+    return Survey(**asdict(deck) | {"tension": tension, "reference": closest, "why_no_reference": why})
 
 
 def _at_top(lines: list[dict[str, Any]], place: Sequence[float], tension: float) -> float | None:
@@ -200,16 +200,16 @@ def _at_top(lines: list[dict[str, Any]], place: Sequence[float], tension: float)
     return min(near, key=lambda other: abs(other - tension), default=None)
 
 
-def _whole_beside(deck: Found, folder: Path, lines: Any) -> Found:
+def _whole_beside(deck: Survey, folder: Path, lines: Any) -> Survey:
     """That line whose tension differs most, of those whose tops MoorPy has at the same place."""
     with FORKING:
         runs = Run(folder).of_lines.values()
         ours = [(float(run["effective_tension"][-1, -1]), run["position"][-1, -1]) for run in runs]
     if isinstance(lines, str):
-        return Found(**asdict(deck) | {"tension": max(tension for tension, _ in ours), "why_no_reference": lines})
+        return Survey(**asdict(deck) | {"tension": max(tension for tension, _ in ours), "why_no_reference": lines})
     pairs = [(tension, other) for tension, place in ours if (other := _at_top(lines, place, tension))]
     if not pairs:
         why = "no line of MoorPy's has its top at the same place"
-        return Found(**asdict(deck) | {"tension": max(tension for tension, _ in ours), "why_no_reference": why})
+        return Survey(**asdict(deck) | {"tension": max(tension for tension, _ in ours), "why_no_reference": why})
     tension, other = max(pairs, key=lambda pair: abs(pair[0] / pair[1] - 1))
-    return Found(**asdict(deck) | {"tension": tension, "reference": other})
+    return Survey(**asdict(deck) | {"tension": tension, "reference": other})

@@ -95,7 +95,7 @@ class Run:
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class MeshRuns:
     """A mesh: its name, unknowns, and what the programs gave on it."""
 
     name: str
@@ -108,11 +108,11 @@ def main(results: Path, page: bool) -> None:
     if shutil.which("ccx") is None:
         print("there is no ccx here (Debian's calculix-ccx): CalculiX is left out", file=sys.stderr)
     Run(MESHES["coarse"]).by(OURS, results)  # compiles
-    meshes = [_found(name, mesh, results) for name, mesh in MESHES.items()]
+    meshes = [_measured(name, mesh, results) for name, mesh in MESHES.items()]
     publish({"clay": clay_page(meshes)}, results, PAGE if page else None)
 
 
-def _found(name: str, mesh: Mesh, results: Path) -> Found:
+def _measured(name: str, mesh: Mesh, results: Path) -> MeshRuns:
     run, by = Run(mesh), {}
     others = [] if name == FINEST or shutil.which("ccx") is None else list(ELEMENTS)
     for program in (OURS, *others):
@@ -122,10 +122,10 @@ def _found(name: str, mesh: Mesh, results: Path) -> Found:
                 np.savez(path, **asdict(run.by(program, Path(folder))))
         with np.load(path) as stored:
             by[program] = Pressed(stored["force"], int(stored["iterations"]), float(stored["seconds"]))
-    return Found(name, run.unknowns, by)
+    return MeshRuns(name, run.unknowns, by)
 
 
-def clay_page(meshes: list[Found]) -> str:
+def clay_page(meshes: list[MeshRuns]) -> str:
     """Forces by depth of the pipe's middle, how far from riser_soil's on this mesh and on the finest; cost."""
     depth = 0.5e3 * sum(DEPTHS) / STEPS  # mm
     head = ["mesh, unknowns", "program", *(f"N at {step * depth:g} mm" for step in SHOWN)]
@@ -133,7 +133,7 @@ def clay_page(meshes: list[Found]) -> str:
     return table([*head, "off riser_soil", "off the finest", "Newton iterations", "processor s"], rows)
 
 
-def _row(mesh: Found, program: str, finest: Array) -> list[str]:
+def _row(mesh: MeshRuns, program: str, finest: Array) -> list[str]:
     pressed = mesh.by[program]
     shown = ["–" if np.isnan(pressed.force[step - 1]) else f"{pressed.force[step - 1]:.1f}" for step in SHOWN]
     off = [_percent(pressed.force, other) for other in (mesh.by[OURS].force, finest)]

@@ -47,13 +47,13 @@ def surge(folder: Path, mesh: str, time_step: float, *overrides: str) -> Surge:
     interval = f"output.interval={max(time_step, RECORDS)}"
     output = (interval, "output.xdmf_interval=14.0", "output.fields=[bending_moment]")
     run, seconds = timed(SCENE, folder, mesh, f"stages.1.time_step={time_step}", *output, *overrides)
-    moment = run["bending_moment"][_seen(run)]
+    moment = run["bending_moment"][_window(run)]
     return Surge(run.arc.size - 1, time_step, seconds, extremes(run), float(run.arc[moment.max(axis=0).argmax()]), run)
 
 
 def extremes(run: Run) -> dict[str, float]:
     """Extremes from SINCE on, between records and nodes: reactions [kN] as in Table 1, largest bending moment [N.m]."""
-    window, forces, values = _seen(run), reactions(run), {}
+    window, forces, values = _window(run), reactions(run), {}
     for name in FORCES:
         series = 1e-3 * getattr(forces, name)[window]
         values[f"{name} min"] = -float(peak(run.time[window], -series))
@@ -82,5 +82,5 @@ def orders(coarse: Surge, middle: Surge, fine: Surge) -> dict[str, float]:
     return {name: float(np.log2(np.linalg.norm(b[name] - a[name]) / np.linalg.norm(c[name] - b[name]))) for name in a}
 
 
-def _seen(run: Run) -> Array:
+def _window(run: Run) -> Array:
     return np.asarray(run.time >= SINCE - 1e-9)

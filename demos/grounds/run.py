@@ -34,7 +34,7 @@ def main(folder: Path, page: bool) -> None:
     results = runs(folder)
     publish({"grounds": figures(results)}, folder, PAGE if page else None)
     if page:
-        fill_pages(told_of(results))
+        fill_pages(sentences(results))
 
 
 def runs(folder: Path) -> Found:
@@ -70,7 +70,7 @@ def row(ground: str, run: Run, seconds: float) -> list[str]:
     ]
 
 
-def told_of(results: Found) -> Texts:
+def sentences(results: Found) -> Texts:
     """Figures that pages tell: what sections differ by from the block, and the seconds of both."""
     (sections, cheap), (block, dear) = results["sections"], results["block"]
     (laid, moved), (its_laid, its_moved) = (run.summary["stages"] for run in (sections, block))

@@ -25,7 +25,7 @@ HEAD = ("vessel", "top tension kN", "by hand", "touchdown arc m", "by hand", "mo
         "by `move` kN m", "in waves kN m", "by `move` kN m")  # fmt: skip
 
 
-class Found(NamedTuple):
+class Computed(NamedTuple):
     """At rest: top tension [N], arc length of the touchdown point [m], largest moment [N.m]; that in waves."""
 
     tension: float
@@ -50,7 +50,7 @@ def main(results: Path, write_page: bool) -> None:
         fill_pages(blocks)
 
 
-def computed(scene: Scene, folder: Path) -> Found:
+def computed(scene: Scene, folder: Path) -> Computed:
     """What a run of the scene has at the end of its last static stage, and in its waves."""
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / "said.txt").open("w", encoding="utf-8") as said, redirect_stdout(said):
@@ -58,7 +58,7 @@ def computed(scene: Scene, folder: Path) -> Found:
     *_, rest, waves = Run(folder).summary["stages"]
     final = rest["final"]
     tension, moment = final["end"]["effective_tension"], final["max_bending_moment"]["value"]
-    return Found(tension, final["touchdown_arc"], moment, waves["extremes"]["max_bending_moment"]["max"])
+    return Computed(tension, final["touchdown_arc"], moment, waves["extremes"]["max_bending_moment"]["max"])
 
 
 def by_move(hung: Scene, offset: float) -> Scene:
@@ -71,7 +71,7 @@ def by_move(hung: Scene, offset: float) -> Scene:
     return scene_from_mapping(data | {"stages": [rest, tow, waves]})
 
 
-def _row(name: str, result: Found, moved: Found, cable: LaidCable, H: float) -> list[str]:
+def _row(name: str, result: Computed, moved: Computed, cable: LaidCable, H: float) -> list[str]:
     return [
         f"{name}, {OFFSETS[name]:+.0f} m",
         f"{1e-3 * result.tension:.1f}",

@@ -33,7 +33,7 @@ def main(folder: Path, page: bool) -> None:
     pictures, done = PICTURES if page else folder, Run(folder)
     tables = {"figures": figures(done), "bars": bars(done), "stiffness": stiffness(done)}
     publish(tables, folder, PAGE if page else None)
-    texts = told_of(done, compute(SCENE, folder / "coarser", COARSER, AT_REST))
+    texts = sentences(done, compute(SCENE, folder / "coarser", COARSER, AT_REST))
     print(shown(texts))
     if page:
         fill_pages(texts)
@@ -66,7 +66,7 @@ def figures(done: Run) -> str:
     return table(["", "laid", "in heave and surge"], rows)
 
 
-def told_of(done: Run, coarser: Run) -> Texts:
+def sentences(done: Run, coarser: Run) -> Texts:
     """Figures that pages tell of the run, of what `check` says before it, and of one at rest on coarser cells."""
     static, motion = done.summary["stages"]
     energy, checked = motion["energy"], describe(read_scene(SCENE))

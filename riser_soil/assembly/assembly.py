@@ -180,7 +180,7 @@ class Assembly:
         parts = {name: own.resume(before, stage) for name, own in self.lines.items()}
         return stage, self._model(parts, self._hung_in(stage))
 
-    def seen_by_lines(self, stage: Stage) -> list[tuple[LineAssembly, Stage]]:
+    def stages_by_line(self, stage: Stage) -> list[tuple[LineAssembly, Stage]]:
         """Each line, and a stage of the scene as it sees it."""
         return [(own, own.own_stage(stage)) for own in self.lines.values()]
 

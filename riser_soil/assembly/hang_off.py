@@ -181,10 +181,10 @@ def by_cable(hung: HungEnd, asked: float) -> float:
 
     values, looks = _looked_at(hung), list[float]()
     for n, value in enumerate(values):
-        looks.append(_seen(hung, value))
+        looks.append(_cable_value(hung, value))
         if n and (looks[-1] - asked) * (looks[-2] - asked) <= 0.0:
             between, close = values[n - 1 : n + 1], CLOSE * max(values)
-            return float(brentq(lambda x: _seen(hung, x) - asked, *between, xtol=close, rtol=CLOSE))
+            return float(brentq(lambda x: _cable_value(hung, x) - asked, *between, xtol=close, rtol=CLOSE))
     what = "length" if hung.asked.by == "length" else "layback"
     raise SceneError(
         f"{hung.path}: {hung.request} is out of reach: as a cable, with a {what} from {min(values):.4g} to "
@@ -200,7 +200,7 @@ def _looked_at(hung: HungEnd) -> Array:
     return np.asarray(taut + (slack - taut) * np.linspace(0.0, 1.0, LOOKS) ** 2)
 
 
-def _seen(hung: HungEnd, value: float) -> float:
+def _cable_value(hung: HungEnd, value: float) -> float:
     """The cable's angle from the vertical [deg] or tension [N] at the end that hangs off."""
     scene = by_line(with_values([hung], [value]))[hung.line]
     start, end = (_position(scene.line, name) for name in ENDS)

@@ -45,10 +45,10 @@ def _of_cable(riser: LineAssembly, cable: Catenary) -> Iterator[str]:
     for name, at, part in (("start", 0, slice(None, low)), ("end", -1, slice(low, None))):
         if z[at] - z[low] > near:
             terms = _by_weight(riser.elements.weight[part], np.diff(z)[part] * (1.0 if name == "end" else -1.0))
-            held = _held(riser, cable, low, name == "end")
-            summands = [_kN(cable.H), *(f"{w / 1e3:.4g} * {h:.5g}" for w, h in terms), *([_kN(held)] if held else [])]
-            total = cable.H + sum(w * h for w, h in terms) + held
-            formula = "H + sum of w h" + (" + attachments" if held else "")
+            added = _attached_tension(riser, cable, low, name == "end")
+            summands = [_kN(cable.H), *(f"{w / 1e3:.4g} * {h:.5g}" for w, h in terms), *([_kN(added)] if added else [])]
+            total = cable.H + sum(w * h for w, h in terms) + added
+            formula = "H + sum of w h" + (" + attachments" if added else "")
             where, tension = _end_words(name, z), _kN(cable.tension[at])
             yield f"  {where}: effective tension {tension} kN; {formula} = {' + '.join(summands)} = {_kN(total)} kN"
             yield from _touchdown(riser, cable, name)
@@ -103,7 +103,7 @@ def _by_weight(weight: Array, climb: Array) -> list[tuple[float, float]]:
     return [(w, float(climb[weight == w].sum())) for w in distinct]
 
 
-def _held(riser: LineAssembly, cable: Catenary, low: int, towards_end: bool) -> float:
+def _attached_tension(riser: LineAssembly, cable: Catenary, low: int, towards_end: bool) -> float:
     """Tension that attachments between the lowest point and an end add there: weight times the sine of the slope [N].
     """
     arc, z = riser.line.arc, cable.curve.position[:, 2]

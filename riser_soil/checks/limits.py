@@ -36,7 +36,7 @@ def size_that_fits(scene: Scene, folder: Path, comm: Communicator) -> ProblemSiz
     come to the same answer.
     """
     size = size_of(scene)
-    most, free = _memory_left(comm), min(comm.allgather(free_disk(folder)))
+    most, free = _available_memory(comm), min(comm.allgather(free_disk(folder)))
     if size.memory(comm.size) > WITHIN * most:
         raise SceneError(_too_much_memory(size, comm.size, most))
     if size.disk > free:
@@ -48,13 +48,13 @@ def tight(size: ProblemSize, comm: Communicator) -> list[str]:
     """A warning of a run that may not fit into the memory that is available; to be asked for before it takes any.
     Collective.
     """
-    most = _memory_left(comm)
+    most = _available_memory(comm)
     if WITHIN * size.memory(comm.size) <= most:
         return []
     return [f"the run may end for want of memory: {_too_much_memory(size, comm.size, most)}"]
 
 
-def _memory_left(comm: Communicator) -> float:
+def _available_memory(comm: Communicator) -> float:
     """Bytes that all ranks together can still have; collective."""
     return min(comm.allgather(available_memory() * _nodes(comm)))
 

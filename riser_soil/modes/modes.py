@@ -144,7 +144,7 @@ def modes_of(scene: Scene, count: int = 10, stage: str | None = None) -> Modes:
     least = NEAR_ZERO * GRAVITY / max(float(own.line.arc[-1]) for own in rest.assembly.lines.values())
     pairs = lowest(rest.stiffness, rest.mass, count, -least)
     _require_sound(pairs, least)
-    return _seen(rest, np.where(pairs.squares > least, pairs.squares, 0.0), pairs)
+    return _shapes_of(rest, np.where(pairs.squares > least, pairs.squares, 0.0), pairs)
 
 
 def _require_sound(pairs: Eigenpairs, least: float) -> None:
@@ -160,7 +160,7 @@ def _require_sound(pairs: Eigenpairs, least: float) -> None:
         )
 
 
-def _seen(rest: RiserAtRest, squares: Array, pairs: Eigenpairs) -> Modes:
+def _shapes_of(rest: RiserAtRest, squares: Array, pairs: Eigenpairs) -> Modes:
     state, moved = State.at_rest(rest.stage.end, rest.assembly.size), [rest.whole(mode) for mode in pairs.modes]
     each = {name: own.line for name, own in rest.assembly.lines.items()}
     of_lines = {name: _line_shapes(line, state, moved) for name, line in each.items()}

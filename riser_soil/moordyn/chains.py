@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from riser_soil.errors import SceneError
 from riser_soil.moordyn.deck import Deck, DeckRow
-from riser_soil.moordyn.nodes import Node, Piece, held_at, is_free, pieces_of
+from riser_soil.moordyn.nodes import Node, Piece, is_free, pieces_of, properties_at
 from riser_soil.moordyn.properties import bends
 
 
@@ -62,7 +62,7 @@ def all_chains(deck: Deck, loaded: Container[str]) -> list[Chain]:
     every, chains = pieces_of(deck), list[Chain]()
 
     def kinked(node: Node) -> bool:
-        return node.name in loaded or bool(held_at(deck, node)) or is_hinge(deck, node, _at(every, node))
+        return node.name in loaded or bool(properties_at(deck, node)) or is_hinge(deck, node, _at(every, node))
 
     for piece in every:
         if not any(piece in chain.pieces for chain in chains):

@@ -18,7 +18,7 @@ from riser_soil.core.quantities import Vector
 from riser_soil.errors import SceneError
 from riser_soil.moordyn.chains import Chain
 from riser_soil.moordyn.deck import Deck
-from riser_soil.moordyn.nodes import held_at
+from riser_soil.moordyn.nodes import properties_at
 from riser_soil.moordyn.properties import net_weight, type_of
 from riser_soil.moordyn.riser_of import length_of
 from riser_soil.riser.catenary import Catenary, catenary
@@ -77,7 +77,7 @@ def cable_of(deck: Deck, chain: Chain, rho: float, g: float, level: float | None
     rows = [type_of(deck, piece.row) for piece in chain.pieces]
     EA = [deck.parsed(row, row["EA"].split("|")[0], "EA") if "EA" in row else np.inf for row in rows]
     stiffest = max((value for value in EA if np.isfinite(value)), default=1e9)
-    within = [(arc[n], held_at(deck, chain.nodes[n])) for n in range(1, len(chain.pieces))]
+    within = [(arc[n], properties_at(deck, chain.nodes[n])) for n in range(1, len(chain.pieces))]
     points = [(s, g * (carried.get("mass", 0.0) - rho * carried.get("volume", 0.0))) for s, carried in within]
     return Cable(
         arc,

@@ -215,7 +215,7 @@ def _word(row: DeckRow, column: str) -> bool:
     return any(word in row[column].upper() for word in ON_THE_SEABED)
 
 
-def held_at(deck: Deck, node: Node) -> dict[str, float]:
+def properties_at(deck: Deck, node: Node) -> dict[str, float]:
     """Mass, volume, drag area and added mass of what sits at a node, in a scene's keys; nothing of it that is zero."""
     if node.section == "rods":
         return {}

@@ -12,7 +12,17 @@ from riser_soil.imported_scene import Remark
 from riser_soil.moordyn.chains import Chain, is_hinge
 from riser_soil.moordyn.deck import Deck, as_number
 from riser_soil.moordyn.loads import SteadyForce
-from riser_soil.moordyn.nodes import COLUMNS, Node, Piece, free_body, has_length, held_at, is_driven, is_free, place
+from riser_soil.moordyn.nodes import (
+    COLUMNS,
+    Node,
+    Piece,
+    free_body,
+    has_length,
+    is_driven,
+    is_free,
+    place,
+    properties_at,
+)
 from riser_soil.moordyn.properties import about_ends, net_weight, type_name, type_of
 from riser_soil.scene.problem import Path
 
@@ -42,7 +52,7 @@ def riser_of(
         if 0 < n < len(chain.pieces) and is_hinge(deck, node, [*chain.pieces[n - 1 : n + 1]]):
             hinge = f"{node.name} is a hinge between lines that bend; bending goes on here"
             riser.remarks.append((node.row.line, hinge))
-        if properties := held_at(deck, node):
+        if properties := properties_at(deck, node):
             riser.origins[("attachments", len(attachments))] = node.row.line
             attachments.append({"at": arc} | properties)
         at = {0: "start", len(chain.pieces): "end"}.get(n, arc)
@@ -85,7 +95,7 @@ def _about_axes(deck: Deck, node: Node) -> list[Remark]:
     return [(node.row.line, f"{coefficients}: the largest of each counts in all directions")]
 
 
-def about_held(deck: Deck, node: Node, line: int) -> list[Remark]:
+def about_fixed(deck: Deck, node: Node, line: int) -> list[Remark]:
     """What the scene does not have of a node that holds an end; line: of the deck, where it has the end."""
     remarks = list[Remark]()
     if node.section == "rods":
@@ -126,6 +136,6 @@ def weighs(deck: Deck, chain: Chain, rho: float) -> float:
     total = math.fsum(length_of(deck, piece) * net_weight(deck, piece, rho) for piece in chain.pieces)
     for node in chain.nodes:
         if is_free(deck, node):
-            properties = held_at(deck, node)
+            properties = properties_at(deck, node)
             total += properties.get("mass", 0.0) - rho * properties.get("volume", 0.0)
     return total

@@ -12,7 +12,7 @@ from riser_soil.moordyn.loads import SteadyForce, forces_of
 from riser_soil.moordyn.names import KNOWN
 from riser_soil.moordyn.nodes import is_free, place
 from riser_soil.moordyn.properties import line_types, stiffen_in_torsion
-from riser_soil.moordyn.riser_of import ImportedRiser, about_held, free_shape, riser_of, weighs
+from riser_soil.moordyn.riser_of import ImportedRiser, about_fixed, free_shape, riser_of, weighs
 from riser_soil.moordyn.settings import Options, options_of, seabed_of
 from riser_soil.scene.problem import Path
 
@@ -33,7 +33,7 @@ def scene_of(deck: Deck, line: str | None = None) -> ImportedScene:
     stage = {"name": "hang", "kind": "static"} | ({"loads": riser.loads} if riser.loads else {})
     data = head_of(deck, options, types) | {"riser": riser.data} | seabed | {"stages": [stage]}
     remarks = [*deck.remarks, *about_options, *about_seabed, *about_types, *about_forces, *twisted, *riser.remarks]
-    remarks += [*_left_out(deck, chain), *_unused(deck, chain, forces), *left_of_sections(deck)]
+    remarks += [*_left_out(deck, chain), *_unused(deck, chain, forces), *lost_sections(deck)]
     own: dict[Path, int] = {("riser",): chain.lines[0].line}
     of_riser: dict[Path, int] = {("riser", *path): number for path, number in riser.origins.items()}
     return ImportedScene(data, sorted({*remarks}), {}, type_lines | bed_lines | own | of_riser)
@@ -74,7 +74,7 @@ def _hold(deck: Deck, chain: Chain, riser: ImportedRiser, options: Options, leve
             riser.data[key] = "free"
             continue
         riser.data[key] = {"position": [*place(deck, node, level)]}
-        riser.remarks += about_held(deck, node, row.line)
+        riser.remarks += about_fixed(deck, node, row.line)
     if "free" in (riser.data["start"], riser.data["end"]):
         fixed = next(place(deck, node, level) for node in chain.ends if not is_free(deck, node))
         points = free_shape(deck, chain, fixed, options["rho"], level)
@@ -98,7 +98,7 @@ def _unused(deck: Deck, chain: Chain, forces: dict[str, list[SteadyForce]]) -> I
             yield from ((each.line, f"force on {name}, which is not free on this riser") for each in several)
 
 
-def left_of_sections(deck: Deck) -> Iterator[Remark]:
+def lost_sections(deck: Deck) -> Iterator[Remark]:
     """Rows of sections that are not imported."""
     for section in deck.rows.keys() - {*KNOWN}:
         yield from ((row.line, f"{section}: {' '.join(row.words)}") for row in deck.of(section))

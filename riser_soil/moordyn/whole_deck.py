@@ -23,16 +23,16 @@ from riser_soil.moordyn.nodes import (
     body_of,
     free_body,
     has_length,
-    held_at,
     is_free,
     is_point,
     kind,
     node_at,
     place,
+    properties_at,
 )
 from riser_soil.moordyn.properties import line_types, stiffen_in_torsion, type_of
-from riser_soil.moordyn.riser_of import ImportedRiser, about_free, about_held, free_shape, riser_of
-from riser_soil.moordyn.scene_of import head_of, left_of_sections
+from riser_soil.moordyn.riser_of import ImportedRiser, about_fixed, about_free, free_shape, riser_of
+from riser_soil.moordyn.scene_of import head_of, lost_sections
 from riser_soil.moordyn.settings import Options, options_of, seabed_of
 from riser_soil.scene.problem import Path
 
@@ -63,7 +63,7 @@ def whole_scene_of(deck: Deck) -> ImportedScene:
     data |= {"stages": [stage]}
     remarks = {*deck.remarks, *about_options, *about_seabed, *about_types, *about_forces, *about_bodies, twisted}
     remarks |= {*about_places, *alone} | {remark for riser in risers.values() for remark in riser.remarks}
-    remarks |= {*_about_nodes(deck, ends, forces), *_unused(deck, chains), *left_of_sections(deck)}
+    remarks |= {*_about_nodes(deck, ends, forces), *_unused(deck, chains), *lost_sections(deck)}
     origins |= type_lines | body_lines
     origins |= {("lines", name, *path): line for name, riser in risers.items() for path, line in riser.origins.items()}
     return ImportedScene(data, sorted(remarks), {}, origins)
@@ -107,7 +107,7 @@ def _riser(
             riser.data[key] = "free"
         else:
             riser.data[key] = {"position": [*places[node.name]]}
-            riser.remarks += about_held(deck, node, row.line)
+            riser.remarks += about_fixed(deck, node, row.line)
     loose = [node for node in chain.ends if is_free(deck, node) and not _is_shared(deck, *ends[node.name])]
     if loose:
         fixed = [node for node in chain.ends if node not in loose]
@@ -127,7 +127,7 @@ def _places(
     loads, g, rho = dict[str, Array](), options["g"], options["rho"]
     for name, (node, at_it) in ends.items():
         if is_free(deck, node) and _is_shared(deck, node, at_it):
-            properties = held_at(deck, node)
+            properties = properties_at(deck, node)
             weight = g * (properties.get("mass", 0.0) - rho * properties.get("volume", 0.0))
             loads[name] = np.sum([[0.0, 0.0, -weight], *(each.force for each in forces.get(name, ()))], axis=0)
     if not loads:
@@ -191,7 +191,7 @@ def _bodies(
     """Free nodes that lines share and that have something of their own, and free bodies."""
     bodies, remarks, origins = dict[str, Any](), list[Remark](), dict[Path, int]()
     for node, at_it in ends.values():
-        properties = held_at(deck, node)
+        properties = properties_at(deck, node)
         if not is_free(deck, node) or not _is_shared(deck, node, at_it) or not properties:
             continue
         name = _node_body(node)

@@ -43,12 +43,12 @@ class DataFile:
 
     def section(self, name: str) -> Item:
         """A section that is one object, as Environment; empty where there is none."""
-        key, value = self._found(name)
+        key, value = self._item_of(name)
         return Item(self, key, _by_name((key,), value if isinstance(value, dict) else {}))
 
     def objects(self, section: str) -> list[Item]:
         """Objects of a section that is a list of them, as Lines."""
-        key, value = self._found(section)
+        key, value = self._item_of(section)
         return _items(self, (key,), value)
 
     def find(self, section: str, name: str) -> Item | None:
@@ -73,7 +73,7 @@ class DataFile:
         head.append(f"{name}: gives no scene, and none is written; entries that prevent it: {len(refused)}")
         raise SceneError("\n".join([*head, *refused]))
 
-    def _found(self, section: str) -> tuple[str, Any]:
+    def _item_of(self, section: str) -> tuple[str, Any]:
         return next(((key, each) for key, each in self.document.data.items() if folded(key) == folded(section)),
                     (section, None))  # fmt: skip
 
@@ -156,7 +156,7 @@ class Item:
         place, value = self.values.get(folded(key), ((), None))
         return Item(self.file, f"{self.name}: {key}", _by_name(place, value if isinstance(value, dict) else {}))
 
-    def left(self, key: str, text: str) -> None:
+    def remark(self, key: str, text: str) -> None:
         """Tells that a value, which counts as read, is not carried over."""
         self.get(key)
         self.file.remarks.append((self.line(key), f"{self.name}: {text}"))

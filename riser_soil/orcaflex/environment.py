@@ -53,7 +53,7 @@ def _viscosity(environment: Item) -> dict[str, float]:
     if method != "cross flow":
         given = environment.word("ReynoldsNumberCalculation", "~")
         text = "Reynolds's number is that of the velocity across the line here, as by Cross flow"
-        environment.left("ReynoldsNumberCalculation", f"ReynoldsNumberCalculation {given}: {text}")
+        environment.remark("ReynoldsNumberCalculation", f"ReynoldsNumberCalculation {given}: {text}")
     return {"kinematic_viscosity": environment.number("KinematicViscosity", _VISCOSITY)}
 
 
@@ -70,11 +70,12 @@ def _current(environment: Item) -> list[list[float]]:
     if method != "interpolated" or model != "variation scheme":
         given = environment.word("VerticalCurrentVariationMethod") if model == "variation scheme" else model
         text = f"current by {given}, of {speed:g} m/s: only one by depth, interpolated; there is none here"
-        environment.left("VerticalCurrentVariationMethod", text)
+        environment.remark("VerticalCurrentVariationMethod", text)
         return []
     turns = {row.number("CurrentRotation", 0.0) for row in rows}
     if len(turns) > 1:
-        environment.left("RefCurrentDirection", "CurrentRotation: between depths the velocity's components are linear")
+        text = "CurrentRotation: between depths the velocity's components are linear"
+        environment.remark("RefCurrentDirection", text)
     velocities = [_velocity(row, speed, direction, surface) for row in rows]
     return sorted(velocities) or [[surface, *_along(speed, direction)]]
 

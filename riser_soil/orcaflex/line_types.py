@@ -81,7 +81,7 @@ def pieces(item: Item, length: float) -> list[tuple[float, PipeOfType]]:
     cuts = [*(cut for a, b in pairwise(arcs) for cut in _cuts(a, b, pipe)), length]
     parts = [(b - a, pipe(0.5 * (a + b))) for a, b in pairwise(cuts)]
     if not item.file.refused:
-        _tell_of_steps(item, tables, parts, [pipe(s) for s in cuts])
+        _remark_on_steps(item, tables, parts, [pipe(s) for s in cuts])
     return parts
 
 
@@ -100,7 +100,7 @@ def _bending(pipe: PipeOfType) -> float:
     return pipe.outer**4 - pipe.inner**4 if pipe.inner < pipe.outer else 0.0
 
 
-def _tell_of_steps(
+def _remark_on_steps(
     item: Item, tables: dict[str, list[Point]], pieces: list[tuple[float, PipeOfType]], at: list[PipeOfType]
 ) -> None:
     ends = [(pipe, end) for n, (_, pipe) in enumerate(pieces) for end in at[n : n + 2]]
@@ -110,7 +110,7 @@ def _tell_of_steps(
     of_stiffness = f", {100.0 * stiffness:.2g} % in EI" if at[0].homogeneous else ""
     names = " and ".join(f"{key} by the table {item.word(key)}" for key in tables)
     text = f"{len(pieces)} pieces of constant diameter, {100.0 * off:.2g} % off in OD at most{of_stiffness}"
-    item.left(key, f"{names}: {text}")
+    item.remark(key, f"{names}: {text}")
 
 
 def line_type(pipe: PipeOfType) -> dict[str, Any]:
@@ -119,7 +119,7 @@ def line_type(pipe: PipeOfType) -> dict[str, Any]:
     data = {"outer_diameter": pipe.outermost, "inner_diameter": pipe.innermost} | _section(pipe)
     if pipe.outer < pipe.outermost:
         data["pipe_diameter"] = pipe.outer
-    _tell(pipe)
+    _remark_on_rest(pipe)
     for ours, theirs, size in (("max_tension", "AllowableTension", FORCE), ("min_bend_radius", "MinRadius", 1.0)):
         if (value := item.numbers(theirs, 1, math.inf)[0]) not in (0.0, math.inf):
             data[ours] = value * size
@@ -142,7 +142,7 @@ def _section(pipe: PipeOfType) -> dict[str, Any]:
         return {}
     in_x, in_y = (_plain_stiffness(item, "EI", value) for value in _pair(item.get("EI")))
     if math.isfinite(in_y) and abs(in_y - in_x) > _EQUAL * in_x:
-        item.left("EI", f"EI about y of {in_y:g}: it is that about x here")
+        item.remark("EI", f"EI about y of {in_y:g}: it is that about x here")
     axial = _plain_stiffness(item, "EA", item.get("EA"))
     for key, size in (("EA", axial), ("EI", in_x)):
         if math.isinf(size):
@@ -175,7 +175,7 @@ def _twisting(pipe: PipeOfType, section: dict[str, float]) -> float:
     size = twisting_stiffness(section["EI"], section["EA"], pipe.outermost)
     reason = f"the line does not twist; {size:g} N.m2 here, without effect unless both ends keep it from spinning"
     if not math.isnan(given):
-        pipe.item.left("GJ", f"GJ {'~' if value is None else value}: {reason}")
+        pipe.item.remark("GJ", f"GJ {'~' if value is None else value}: {reason}")
     return size
 
 
@@ -218,13 +218,13 @@ def _drag(pipe: PipeOfType) -> dict[str, Any]:
     normal = item.positive("NormalDragLiftDiameter", pipe.outermost) / pipe.outermost
     axial = item.number("AxialDragLiftDiameter", pipe.outermost) / pipe.outermost
     if y is not None and y != across:
-        item.left(key_y, f"Cd of {y} in y: it is that in x here")
+        item.remark(key_y, f"Cd of {y} in y: it is that in x here")
     if across is None and along is None:
         return {}
     if is_name(along):
         points = points_of(item, key_z, along)
         along = points[0][1] if points else 0.0
-        item.left(key_z, f"axial Cd by a table: its first value, {along:g}, for all velocities")
+        item.remark(key_z, f"axial Cd by a table: its first value, {along:g}, for all velocities")
     drag: dict[str, Any] = {"tangential": item.number_in(key_z, along, 0.0) * axial}
     if not is_name(across):
         return {"drag": {"normal": item.number_in(key, across, 0.0) * normal} | drag}
@@ -237,20 +237,21 @@ def _drag(pipe: PipeOfType) -> dict[str, Any]:
 def _added_mass(pipe: PipeOfType) -> dict[str, Any]:
     (key, across), (key_y, y), (key_z, along) = _coefficients(pipe.item, "Ca")
     if y is not None and y != across:
-        pipe.item.left(key_y, f"Ca of {y} in y: it is that in x here")
+        pipe.item.remark(key_y, f"Ca of {y} in y: it is that in x here")
     if across is None and along is None:
         return {}
     normal, axial = pipe.item.number_in(key, across, 0.0), pipe.item.number_in(key_z, along, 0.0)
     return {"added_mass": {"normal": normal, "tangential": axial}}
 
 
-def _tell(pipe: PipeOfType) -> None:
+def _remark_on_rest(pipe: PipeOfType) -> None:
     item = pipe.item
     for key, what in _LEFT.items():
         if item.choice(key) not in ("", "0", "0.0", "no", "none"):
-            item.left(key, f"{key} {item.word(key)}: {what}")
+            item.remark(key, f"{key} {item.word(key)}: {what}")
     default = 0.3 if pipe.homogeneous else 0.5
     if (ratio := item.number("PoissonRatio", default)) != 0.5:
-        item.left("PoissonRatio", f"PoissonRatio {ratio:g}: the pipe stretches with effective tension here, as for 0.5")
+        text = f"PoissonRatio {ratio:g}: the pipe stretches with effective tension here, as for 0.5"
+        item.remark("PoissonRatio", text)
     if item.has("OuterContactDiameter") and pipe.contact_diameter != pipe.outermost:
-        item.left("OuterContactDiameter", f"OuterContactDiameter {pipe.contact_diameter:g}: OD touches here")
+        item.remark("OuterContactDiameter", f"OuterContactDiameter {pipe.contact_diameter:g}: OD touches here")

@@ -73,7 +73,7 @@ def line_of(file: DataFile, item: Item) -> LineWithEnds | None:
     origins: dict[KeyPath, int] = {(): item.line("Name")}
     origins |= {("segments", n): line for n, (*_, line) in enumerate(parts)}
     origins |= {(key,): end.connection.line("Connection") for key, end in zip(("start", "end"), both, strict=True)}
-    _tell_of_torsion(item, data)
+    _remark_on_torsion(item, data)
     return LineWithEnds(item, data, both, (parts[0][1], parts[-1][1]), types, origins)
 
 
@@ -86,7 +86,7 @@ def lay(line: LineWithEnds, level: float) -> None:
             line.data[key]["position"] = end.position = [*end.position[:2], rest]
             if depth > _ROUNDING:
                 text = f"an end {depth:.4g} m below where the line rests on the seabed: it is laid from z = {rest:g} m"
-                end.connection.left("ConnectionZ", text)
+                end.connection.remark("ConnectionZ", text)
 
 
 def line_types_of(lines: list[LineWithEnds]) -> dict[str, Any]:
@@ -164,7 +164,8 @@ def _contents(line: Item) -> dict[str, Any] | None:
     contents = {"density": line.number("ContentsDensity", 0.0) * MASS}
     pressure = line.number("ContentsPressure", 0.0) * FORCE
     if pressure and not line.has("ContentsPressureRefZ"):
-        line.left("ContentsPressure", "ContentsPressure without ContentsPressureRefZ: give the pressure and its level")
+        text = "ContentsPressure without ContentsPressureRefZ: give the pressure and its level"
+        line.remark("ContentsPressure", text)
     elif pressure:
         contents |= {"pressure": pressure, "pressure_level": line.number("ContentsPressureRefZ")}
     return contents if contents["density"] or pressure else None
@@ -177,7 +178,7 @@ def _attachments(line: Item, length: float) -> list[dict[str, Any]]:
         kind = row.word("AttachmentType")
         clump = line.file.find("ClumpTypes", kind)
         if clump is None:
-            row.left("AttachmentType", f"attachment {kind}: only clumps are carried over, and it is none")
+            row.remark("AttachmentType", f"attachment {kind}: only clumps are carried over, and it is none")
             continue
         arc, of = (next((key for key in keys if row.has(key)), keys[0]) for keys in (_ARCS, _RELATIVE))
         at = row.number(arc)
@@ -186,7 +187,7 @@ def _attachments(line: Item, length: float) -> list[dict[str, Any]]:
         elif relative != "end a":
             row.refuse(of, f"is {relative}; give it relative to End A or End B")
         if any(row.numbers(key, 1)[0] for key in ("Attachmentx", "Attachmenty")):
-            row.left("Attachmentx", f"attachment {kind}, beside the line's axis: it sits on it here")
+            row.remark("Attachmentx", f"attachment {kind}, beside the line's axis: it sits on it here")
         attachments.setdefault(folded(kind), _clump(clump) | {"at": []})["at"].append(at)
     return [each | {"at": sorted(each["at"])} for each in attachments.values()]
 
@@ -199,7 +200,7 @@ def _clump(item: Item) -> dict[str, Any]:
         if len({*values}) > 1:
             shown = ", ".join(f"{value:g}" for value in values)
             what = "Cd times DragArea" if key == "DragArea" else key
-            item.left(key, f"{what} of {shown} in x, y, z: that in x here, in all directions")
+            item.remark(key, f"{what} of {shown} in x, y, z: that in x here, in all directions")
     clump = {"mass": item.number("Mass", 0.0) * MASS, "volume": item.number("Volume", 0.0), "drag_area": by_axis[0]}
     clump |= {"added_mass": added[0]} if clump["volume"] else {}
     return {key: value for key, value in clump.items() if value != 0.0}
@@ -242,13 +243,13 @@ def _rotation(end: LineEnd, lower: LineEnd, upper: LineEnd, clamp: float) -> dic
         if size == 0.0:
             return {}
         text = f"clamped: a joint of {size:.4g} kN.m/deg here, {_CLAMPED:g} times EI over the last element's length"
-        row.left("ConnectionxBendingStiffness", text)
+        row.remark("ConnectionxBendingStiffness", text)
     angle = _neutral_angle(end, lower, upper)
     if angle is None:
-        end.connection.left("ConnectionAzimuth", "a joint out of the riser's plane: the end is free to turn here")
+        end.connection.remark("ConnectionAzimuth", "a joint out of the riser's plane: the end is free to turn here")
         return {}
     if across not in ("", row.word("ConnectionxBendingStiffness")):
-        row.left("ConnectionyBendingStiffness", f"{across} about y: it is that about x here")
+        row.remark("ConnectionyBendingStiffness", f"{across} about y: it is that about x here")
     return {"rotation": {"stiffness": math.degrees(size * FORCE), "neutral_angle": angle}}
 
 
@@ -262,7 +263,7 @@ def _joint_stiffness(row: Item) -> float:
         return math.nan if not points else row.refuse(key, f"the table {name} needs two rows; correct it")
     (x0, y0), (x1, y1) = points[:2]
     slope, (x, y) = (y1 - y0) / (x1 - x0), points[-1]
-    row.left(key, f"a joint by the table {name}: its slope at {x0:g} deg, {slope:.4g} kN.m/deg, for all angles; "
+    row.remark(key, f"a joint by the table {name}: its slope at {x0:g} deg, {slope:.4g} kN.m/deg, for all angles; "
              f"at {x:g} deg the moment would be {y:g} kN.m")  # fmt: skip
     return slope
 
@@ -286,10 +287,10 @@ def _neutral_angle(end: LineEnd, lower: LineEnd, upper: LineEnd) -> float | None
     return math.degrees(math.atan2(sign * along, sign * axis[2])) if abs(out) < _OUT_OF_PLANE else None
 
 
-def _tell_of_torsion(item: Item, data: dict[str, Any]) -> None:
+def _remark_on_torsion(item: Item, data: dict[str, Any]) -> None:
     """A line without torsion bears a torque here if both ends keep it from spinning, in three dimensions."""
     clamped = [key for key in ("start", "end") if "rotation" in data[key]]
     if len(clamped) == 2 and item.choice("IncludeTorsion", "No") == "no":
         text = "both flex joints keep the line from spinning here, so that its GJ bears torque in three dimensions"
-        item.left("IncludeTorsion", f"IncludeTorsion No: {text}")
+        item.remark("IncludeTorsion", f"IncludeTorsion No: {text}")
     item.get("IncludeTorsion")

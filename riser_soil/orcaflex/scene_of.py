@@ -56,7 +56,7 @@ def _chosen(file: DataFile, name: str | None) -> list[Item]:
         raise SceneError(f"{file.document.name}: there is no line {name or 'at all'}; it has {known}")
     for n, each in enumerate(lines):
         if each.values is not chosen[0].values:
-            each.left("Name", f"a scene has one riser; --line {each.title!r} imports this one, --line all all lines")
+            each.remark("Name", f"a scene has one riser; --line {each.title!r} imports this one, --line all all lines")
             file.read.add((_section(file, "Lines"), n))
     return chosen[:1]
 
@@ -132,5 +132,5 @@ def _on_vessel(file: DataFile, end: LineEnd, stem: str, files: dict[str, str]) -
 def _time_step(general: Item) -> Any:
     if general.choice("ImplicitUseVariableTimeStep", "No") == "no" and general.has("ImplicitConstantTimeStep"):
         return general.number("ImplicitConstantTimeStep")
-    general.left("ImplicitUseVariableTimeStep", "steps of a length of their own: they are `auto` here")
+    general.remark("ImplicitUseVariableTimeStep", "steps of a length of their own: they are `auto` here")
     return "auto"

@@ -33,12 +33,12 @@ def ground_of(environment: Item, pipes: list[PipeOfType], g: float) -> dict[str,
     first = pipes[0]
     contact, remark = friction(*friction_of(first.item))
     if remark:
-        first.item.left("SeabedAxialFrictionCoefficient", remark)
+        first.item.remark("SeabedAxialFrictionCoefficient", remark)
     as_first = (first.contact_diameter, friction_of(first.item))
     for each in pipes:
         if (each.contact_diameter, friction_of(each.item)) != as_first and each.item.name != first.item.name:
             text = f"on the seabed it counts as {first.item.name}: one contact diameter and friction for all"
-            each.item.left("OD", text)
+            each.item.remark("OD", text)
     return {"seabed": _seabed(environment, first.contact_diameter, g)} | contact
 
 
@@ -47,7 +47,7 @@ def _seabed(environment: Item, diameter: float, g: float) -> dict[str, Any]:
     place = {"level": surface_level(environment) - water_depth(environment), "contact_at": "outer"}
     kind = environment.choice("SeabedModel", "Elastic")
     if environment.word("SeabedShearStiffness"):
-        environment.left("SeabedShearStiffness", "SeabedShearStiffness: friction takes effect over D/30 here")
+        environment.remark("SeabedShearStiffness", "SeabedShearStiffness: friction takes effect over D/30 here")
     other = [key for key in environment.values if "soil" in key] if kind in _SPRINGS else ["SeabedNormalStiffness"]
     for key in other:
         environment.get(key)  # belongs to the other model: without effect
@@ -79,7 +79,7 @@ def _law(environment: Item, g: float) -> dict[str, Any]:
     defaults = {key: RandolphQuiggin.model_fields[key].default for key in _LAW if key not in values}
     if defaults:
         shown = ", ".join(f"{key} {value:g}" for key, value in defaults.items())
-        environment.left("SeabedModel", f"nonlinear soil model: what is not given is the law's default here: {shown}")
+        environment.remark("SeabedModel", f"nonlinear soil model: what is not given is the law's default here: {shown}")
     return law | values
 
 

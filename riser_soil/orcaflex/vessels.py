@@ -60,10 +60,10 @@ def motion(file: DataFile, vessel: Item, rao: str) -> tuple[dict[str, Any], str]
     name, draught = vessel.word("VesselType"), vessel.word("Draught")
     primary, superimposed = vessel.word("PrimaryMotion", "None"), vessel.word("SuperimposedMotion", "None")
     if folded(primary) != "none":
-        vessel.left("PrimaryMotion", f"PrimaryMotion {primary}: the vessel has its superimposed motion alone here")
+        vessel.remark("PrimaryMotion", f"PrimaryMotion {primary}: the vessel has its superimposed motion alone here")
     if "raos" not in folded(superimposed):
         if folded(superimposed) != "none":
-            vessel.left("SuperimposedMotion", f"SuperimposedMotion {superimposed}: the vessel rests here")
+            vessel.remark("SuperimposedMotion", f"SuperimposedMotion {superimposed}: the vessel rests here")
         return None
     kind = file.named("VesselTypes", name, vessel, "VesselType")
     if kind is None:
@@ -71,15 +71,15 @@ def motion(file: DataFile, vessel: Item, rao: str) -> tuple[dict[str, Any], str]
     draughts = [each for each in kind.items("Draughts") if folded(each.title) == folded(draught)]
     raos = draughts[0].part("DisplacementRAOs") if draughts else None
     if raos is None:
-        vessel.left("Draught", f"there is no draught {draught}: the vessel rests here")
+        vessel.remark("Draught", f"there is no draught {draught}: the vessel rests here")
         return None
     if unlike := _unlike(kind, raos):
         item, key, why = unlike
-        item.left(key, f"{key} {why}: RAOs are not carried over, the vessel rests here")
+        item.remark(key, f"{key} {why}: RAOs are not carried over, the vessel rests here")
         return None
     table = _table(kind, raos)
     if not table:
-        raos.left("RAOs", "RAOs: there is no row of them; the vessel rests here")
+        raos.remark("RAOs", "RAOs: there is no row of them; the vessel rests here")
         return None
     data = {"rao": rao, "reference": place_on(vessel, raos.numbers("RAOOrigin", 3))}
     return data | {"heading_deg": _orientation(vessel)[2]}, _text(table)
@@ -110,7 +110,7 @@ def _table(kind: Item, raos: Item) -> Table:
     limits = {w for known in directions.values() for w in known if w in (0.0, math.inf)}
     if limits:
         text = "waves of no period: linear in the period below the shortest; endless ones: linear in the frequency"
-        raos.left("RAOs", f"RAOs of {text}, as between all rows here")
+        raos.remark("RAOs", f"RAOs of {text}, as between all rows here")
     filled = {direction: _filled(known, frequencies, limits) for direction, known in directions.items()}
     response = {(w, direction % 360.0): each for direction, known in filled.items() for w, each in known.items()}
     for (w, direction), responses in list(response.items()):

@@ -35,7 +35,7 @@ def waves(environment: Item, build_up: float, g: float, depth: float) -> dict[st
         return None
     kinds = data[0] if len(data) == 1 else alone[0] if alone else {"trains": data}
     for _ in data[1:] if alone else []:
-        environment.left("WaveTrains", "a wave of finite height is alone here; the other trains are not carried over")
+        environment.remark("WaveTrains", "a wave of finite height is alone here; the other trains are not carried over")
     if any(kind in train for train in data for kind in _PEAKED.values()):
         environment.get("WaveFrequencySpectrumDiscretisationMethod")
     ramp = {"ramp": build_up} if build_up else {}
@@ -46,7 +46,7 @@ def _stretching(environment: Item) -> dict[str, str]:
     given = environment.choice("KinematicStretchingMethod", "Vertical stretching")
     if given not in _STRETCHING:
         shown = environment.word("KinematicStretchingMethod")
-        environment.left("KinematicStretchingMethod", f"KinematicStretchingMethod {shown}: Wheeler's here")
+        environment.remark("KinematicStretchingMethod", f"KinematicStretchingMethod {shown}: Wheeler's here")
         return {}
     return {"stretching": _STRETCHING[given]}
 
@@ -60,7 +60,7 @@ def _train(train: Item, build_up: float, g: float, depth: float) -> dict[str, An
     if kind in _PEAKED:
         return _peaked(train, _PEAKED[kind])
     if kind not in ("none", ""):
-        train.left("WaveType", f"WaveType {train.word('WaveType')}: there is no such wave here; give the waves anew")
+        train.remark("WaveType", f"WaveType {train.word('WaveType')}: there is no such wave here; give the waves anew")
     return None
 
 
@@ -72,7 +72,7 @@ def _regular(train: Item, kind: str, build_up: float, g: float, depth: float) ->
     x, y = train.numbers("WaveOrigin", 2)
     toward = math.radians(direction)
     if kind != "airy" and (x or y):
-        train.left("WaveOrigin", "WaveOrigin: the crest passes x = y = 0 here at that time")
+        train.remark("WaveOrigin", "WaveOrigin: the crest passes x = y = 0 here at that time")
         x = y = 0.0
     later = build_up + train.number("WaveTimeOrigin", 0.0)
     train.get("WaveStreamFunctionOrder")  # ours has as many terms as the crest needs
@@ -86,18 +86,18 @@ def _regular(train: Item, kind: str, build_up: float, g: float, depth: float) ->
 
 def _peaked(train: Item, kind: str) -> dict[str, Any] | None:
     if not train.has("WaveHs"):
-        train.left("WaveType", "WaveHs is not given: no such waves here; give them anew")
+        train.remark("WaveType", "WaveHs is not given: no such waves here; give them anew")
         return None
     data = {"Hs": train.number("WaveHs"), "direction_deg": train.number("WaveDirection", 0.0)}
     if data["Hs"] == 0.0:
         return None
     if kind == "jonswap" and not train.has("WaveGamma"):
-        train.left("WaveType", "WaveGamma is not given: no such waves here; give them anew")
+        train.remark("WaveType", "WaveGamma is not given: no such waves here; give them anew")
         return None
     gamma = train.number("WaveGamma") if kind == "jonswap" else 1.0
     peak = _peak_period(train, gamma)
     if peak is None:
-        train.left("WaveType", "neither WaveTp nor WaveTz is given: no such waves here; give them anew")
+        train.remark("WaveType", "neither WaveTp nor WaveTz is given: no such waves here; give them anew")
         return None
     data |= {"Tp": peak} | ({"gamma": gamma} if kind == "jonswap" else {})
     if train.has("WaveNumberOfComponents") and math.isfinite(count := train.number("WaveNumberOfComponents")):
@@ -105,9 +105,9 @@ def _peaked(train: Item, kind: str) -> dict[str, Any] | None:
     for key in _DRAWN:
         train.get(key)
     text = "seed, phases and frequencies are drawn anew, by `seed` and `components`"
-    train.left("WaveType", f"{train.word('WaveType')}: {text}")
+    train.remark("WaveType", f"{train.word('WaveType')}: {text}")
     if train.number("WaveNumberOfSpectralDirections", 1.0) > 1.0:
-        train.left("WaveNumberOfSpectralDirections", "directional spreading: give `spreading: {s, directions}`")
+        train.remark("WaveNumberOfSpectralDirections", "directional spreading: give `spreading: {s, directions}`")
     return {kind: data}
 
 

@@ -51,8 +51,8 @@ def drawn_work_precision(shown: WorkPrecision) -> str:
     figure, (axes,) = sheet(1, 1, width=9.0, height=5.6)
     for number, line in enumerate(shown.lines):
         _draw_line(axes, line, f"C{number}", MARKERS[number % len(MARKERS)])
-    axes.plot(shown.other_seconds, _seen(shown.other_errors), "k*", markersize=9, label="several settings at once")
-    axes.step(shown.front_seconds, _seen(shown.front_errors), "k-", where="post", linewidth=0.8, label="Pareto front")
+    axes.plot(shown.other_seconds, _drawn(shown.other_errors), "k*", markersize=9, label="several settings at once")
+    axes.step(shown.front_seconds, _drawn(shown.front_errors), "k-", where="post", linewidth=0.8, label="Pareto front")
     axes.plot(*[[each] for each in (shown.scene[0], max(shown.scene[1], LEAST))], "ko", fillstyle="none", markersize=15)
     axes.annotate("scene as it is", (shown.scene[0], max(shown.scene[1], LEAST)), (12, 8), textcoords="offset points")
     if shown.uncertainty > LEAST:
@@ -72,14 +72,14 @@ def drawn_work_precision(shown: WorkPrecision) -> str:
 
 
 def _draw_line(axes: Axes, line: SettingLine, color: str, marker: str) -> None:
-    errors = _seen(line.errors)
+    errors = _drawn(line.errors)
     axes.plot(line.seconds, errors, "-", color=color, marker=marker, label=f"{line.words}: {line.order}")
     beside = [n for n, alone in enumerate(line.alone) if not alone]
     places = [line.seconds[n] for n in beside], [errors[n] for n in beside]
     axes.plot(*places, color=color, marker=marker, markerfacecolor="white", linestyle="none", zorder=3)
 
 
-def _seen(errors: Sequence[float]) -> list[float]:
+def _drawn(errors: Sequence[float]) -> list[float]:
     return [max(error, LEAST) for error in errors]
 
 

@@ -115,7 +115,7 @@ def fit(chain: BarChain, h: float, least_H: float, near: CableBalance | None = N
     is found.
     """
     goal, straight = SpanCondition(h, least_H), _straight(chain)
-    if near is not None and (balance := _newton(_held_by(chain, near), goal)) is not None and least_H < balance.H:
+    if near is not None and (balance := _newton(_with_ends_of(chain, near), goal)) is not None and least_H < balance.H:
         return balance
     taut = _solved(straight, straight)
     far = _nearly(taut, goal)
@@ -130,7 +130,7 @@ def fit(chain: BarChain, h: float, least_H: float, near: CableBalance | None = N
     return _solved(near, near, goal)
 
 
-def _held_by(chain: BarChain, near: CableBalance) -> CableBalance:
+def _with_ends_of(chain: BarChain, near: CableBalance) -> CableBalance:
     """A balance with the ends of another chain of the same bars."""
     z = near.z.copy()
     z[0], z[-1] = chain.z0, chain.z1

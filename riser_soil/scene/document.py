@@ -103,7 +103,7 @@ def parse(text: str, name: str, needs: str = NEEDS) -> Document:
     try:
         built = _Builder(YAML(typ="safe", pure=True), name, lists)
         document = built.document(short, needs)
-        if not built.found_all:
+        if not built.read_all:
             document = _Builder(YAML(typ="safe", pure=True), name, {}).document(text, needs)
         document.text = text
         return document
@@ -163,7 +163,7 @@ class _Builder:
         self._count = 0
 
     @property
-    def found_all(self) -> bool:
+    def read_all(self) -> bool:
         """Whether every long list was where the document has a list."""
         return len(self._found) == len(self._lists)
 

@@ -22,24 +22,24 @@ def wrong_file(text: str) -> PydanticCustomError:
     return PydanticCustomError("wrong_file", "{text}", {"text": text})
 
 
-def _found(file: Path, info: ValidationInfo) -> Path:
+def _existing(file: Path, info: ValidationInfo) -> Path:
     path = (Path((info.context or {}).get("folder", ".")) / file).absolute()
     if not path.is_file():
         raise wrong_file(f"there is no such file as {path}; correct the name: it is sought beside the scene file")
     return path
 
 
-def _found_folder(folder: Path, info: ValidationInfo) -> Path:
+def _existing_folder(folder: Path, info: ValidationInfo) -> Path:
     path = (Path((info.context or {}).get("folder", ".")) / folder).absolute()
     if not path.is_dir():
         raise wrong_file(f"there is no such folder as {path}; correct the name: it is sought beside the scene file")
     return path
 
 
-NamedFile = Annotated[Path, AfterValidator(_found)]
+NamedFile = Annotated[Path, AfterValidator(_existing)]
 """A file that is there, by its absolute path; a relative name is sought beside the scene file."""
 
-NamedFolder = Annotated[Path, AfterValidator(_found_folder)]
+NamedFolder = Annotated[Path, AfterValidator(_existing_folder)]
 """A folder that is there, likewise."""
 
 

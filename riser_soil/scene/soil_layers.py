@@ -33,7 +33,7 @@ class Layer(BaseModel):
     )
 
     @model_validator(mode="after")
-    def _found_one_way(self) -> Self:
+    def _given_one_way(self) -> Self:
         if self.to is not None and self.volume is not None:
             raise wrong("volume", "is given beside to", "give either")
         if self.volume is not None and self.submerged_unit_weight is not None:

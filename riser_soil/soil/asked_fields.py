@@ -57,7 +57,7 @@ class AskedFields:
         return FieldsOfLaw(tuple(dict.fromkeys(asked)), own, tuple(columns))
 
     def _check_effective(self, columns: Sequence[str]) -> None:
-        untold = dict.fromkeys(law.kind for law in self.laws if not law.tells_effective(columns))
+        untold = dict.fromkeys(law.kind for law in self.laws if not law.knows_effective_stress(columns))
         if untold:
             raise SceneError(
                 f"output.soil_fields: effective_stress is not known of {' and '.join(untold)}: its stress is total, "

@@ -118,7 +118,7 @@ class Compliance:
         columns = self._files.find(group, (3 * len(nodes), self._numbering.free))
         if columns is not None:
             return columns
-        reordered = self._found(nodes)
+        reordered = self._computed(nodes)
         columns = self._files.keep(group, reordered)
         if columns is reordered:
             while self._in_memory and (len(self._in_memory) + 1) * reordered.nbytes > HELD:
@@ -126,7 +126,7 @@ class Compliance:
             self._in_memory.append(group)
         return columns
 
-    def _found(self, nodes: IntArray) -> Array:
+    def _computed(self, nodes: IntArray) -> Array:
         """Columns (3 nn, n) of nodes of the top, by a solve."""
         rows = self.top.reshape(-1, 3)[nodes].ravel()
         loads = np.zeros((self._numbering.free, len(rows)), order="F")
@@ -252,9 +252,9 @@ def _make_workspace(folder: Path, size: int) -> None:
     OSError where they may not.
     """
     others = sorted((path for path in folder.parent.iterdir() if path != folder), key=_last_use)
-    while _taken(folder.parent) + size > MOST and others:
+    while _size_below(folder.parent) + size > MOST and others:
         shutil.rmtree(others.pop(0), ignore_errors=True)
-    if _taken(folder.parent) + size > MOST or shutil.disk_usage(folder).free < size + LEFT:
+    if _size_below(folder.parent) + size > MOST or shutil.disk_usage(folder).free < size + LEFT:
         raise OSError(f"{folder.parent} may take {MOST >> 20} MB and leaves {LEFT >> 20} MB of the disk free")
 
 
@@ -265,7 +265,7 @@ def _last_use(path: Path) -> float:
     return 0.0
 
 
-def _taken(root: Path) -> int:
+def _size_below(root: Path) -> int:
     sizes = 0
     for place, _, names in os.walk(root):
         for name in names:

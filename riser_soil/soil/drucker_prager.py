@@ -73,7 +73,7 @@ class DruckerPrager(SoilLaw):
             )
         return self
 
-    def tells_effective(self, columns: Sequence[str]) -> bool:
+    def knows_effective_stress(self, columns: Sequence[str]) -> bool:
         """Sand drains: its stress is the effective one."""
         return True
 

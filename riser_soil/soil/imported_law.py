@@ -57,7 +57,7 @@ class ImportedLaw(SoilLaw):
     def lies(self, key: str, unit_weight: float, K0: float) -> None:
         self._key, self._above = key, (unit_weight, K0)
 
-    def tells_effective(self, columns: Sequence[str]) -> bool:
+    def knows_effective_stress(self, columns: Sequence[str]) -> bool:
         return PORE_PRESSURE in columns
 
     def surface_modulus(self, width: float) -> float:

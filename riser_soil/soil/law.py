@@ -112,7 +112,7 @@ class SoilLaw(BaseModel, ABC):
         seabed the submerged unit weight [N/m3] and K0.
         """
 
-    def tells_effective(self, columns: Sequence[str]) -> bool:
+    def knows_effective_stress(self, columns: Sequence[str]) -> bool:
         """Whether effective stress is known of soil whose histories are named so: it is the law's stress, or pore
         pressure is one of the histories.
         """

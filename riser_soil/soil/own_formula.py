@@ -88,9 +88,9 @@ class OwnFormula(ABC):
         """An answer that is none, nan, makes the solver try a smaller step."""
         try:
             answer = self.answer(strain_increment, history, dt)
-            self._tell_of_infinite(strain_increment, answer[0], answer[1])
+            self._warn_of_infinite(strain_increment, answer[0], answer[1])
         except LawError as err:
-            self._tell(f"{err}: the step is tried again with a smaller one")
+            self._warn(f"{err}: the step is tried again with a smaller one")
             answer = [np.full((len(self.depth), *shape), np.nan) for shape in ((6,), (6, 6), (len(self.columns),))]
         return self._with_energy(answer)
 
@@ -101,13 +101,13 @@ class OwnFormula(ABC):
         elastic = mandel.elastic_strain(self.bulk, self.shear, change)
         return StressUpdate(answer[0], answer[1], answer[2], 0.5 * mandel.product(change, elastic), elastic)
 
-    def _tell_of_infinite(self, increment: Array, stress: Array, tangent: Array) -> None:
+    def _warn_of_infinite(self, increment: Array, stress: Array, tangent: Array) -> None:
         finite = np.isfinite(stress).all(axis=1) & np.isfinite(tangent).all(axis=(1, 2))
         if not finite.all():
             at = int(np.argmin(finite))
-            self._tell(f"{infinite(self.depth[at], increment[at])}: the step is tried again with a smaller one")
+            self._warn(f"{infinite(self.depth[at], increment[at])}: the step is tried again with a smaller one")
 
-    def _tell(self, text: str) -> None:
+    def _warn(self, text: str) -> None:
         """Once of a class: what follows is likely to be the same."""
         if type(self.law) not in _WARNED:
             print(f"warning: {self.label}: {text}", file=sys.stderr)

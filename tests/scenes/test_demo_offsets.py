@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from demos.offsets.by_hand import LaidCable, cable_of
-from demos.offsets.run import HERE, OFFSETS, SCENE, Found, by_move, computed
+from demos.offsets.run import HERE, OFFSETS, SCENE, Computed, by_move, computed
 from demos.page import block
 from riser_soil.accuracy.chosen_run import in_numbers
 from riser_soil.cases.expansion import read_cases
@@ -20,7 +20,7 @@ SHORT = "stages.1.duration=5.0"  # s: the ramp of the waves has begun
 
 
 @pytest.fixture(scope="module")
-def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[Found, Found]]:
+def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[Computed, Computed]]:
     """At each offset what is found by it, and by a stage that moves the end."""
     folder, results = tmp_path_factory.mktemp("offsets"), {}
     with redirect_stdout(StringIO()):
@@ -38,26 +38,26 @@ def laid(name: str) -> tuple[LaidCable, float]:
 
 
 @pytest.mark.parametrize("name", [*OFFSETS])
-def test_an_offset_is_a_move_of_the_vessel(runs: dict[str, tuple[Found, Found]], name: str) -> None:
+def test_an_offset_is_a_move_of_the_vessel(runs: dict[str, tuple[Computed, Computed]], name: str) -> None:
     by_offset, moved = runs[name]
     assert by_offset == pytest.approx(moved, rel=1e-7)
 
 
 @pytest.mark.parametrize("name", [*OFFSETS])
-def test_it_hangs_as_a_cable(runs: dict[str, tuple[Found, Found]], name: str) -> None:
+def test_it_hangs_as_a_cable(runs: dict[str, tuple[Computed, Computed]], name: str) -> None:
     run, (cable, H) = runs[name][0], laid(name)
     assert run.tension == pytest.approx(cable.top_tension(H), rel=2e-3)
     assert run.moment == pytest.approx(cable.moment(H), rel=0.02)
     assert cable.touchdown(H) - run.touchdown == pytest.approx((cable.EI / H) ** 0.5, abs=2.0)
 
 
-def test_near_bends_it_most(runs: dict[str, tuple[Found, Found]]) -> None:
+def test_near_bends_it_most(runs: dict[str, tuple[Computed, Computed]]) -> None:
     near, mean, far = (runs[name][0] for name in OFFSETS)
     assert near.moment > 1.3 * mean.moment > 1.6 * far.moment
 
 
 @pytest.mark.parametrize("page", [HERE / "README.md", ROOT / "docs/cases.md"])
-def test_the_pages_have_what_is_found(runs: dict[str, tuple[Found, Found]], page: Path) -> None:
+def test_the_pages_have_what_is_found(runs: dict[str, tuple[Computed, Computed]], page: Path) -> None:
     rows = block(page.read_text(encoding="utf-8"), "offsets").splitlines()[2:]
     for name, row in zip(OFFSETS, rows, strict=True):
         place, *cells = (cell.strip() for cell in row.strip("| ").split("|"))

@@ -56,7 +56,7 @@ SCENES = {"hanging": hanging, "bouncing": bouncing}
 
 
 @dataclass
-class Seen:
+class Counts:
     """By step: choices of the linear solver (True: the riser alone), evaluations of the law, factorisations by PETSc;
     places of the riser's nodes, largest displacement of this rank's soil [m].
     """
@@ -109,9 +109,9 @@ def counted(coupled: bool) -> Iterator[Counting]:
         yield counting
 
 
-def counted_run(scene: Mapping, coupled: bool = False, comm: Any = MPI.COMM_SELF) -> Seen:
+def counted_run(scene: Mapping, coupled: bool = False, comm: Any = MPI.COMM_SELF) -> Counts:
     """All stages of a scene."""
-    assembly, counts = build(scene_from_mapping(scene), comm), Seen()
+    assembly, counts = build(scene_from_mapping(scene), comm), Counts()
     assert assembly.soil is not None
     total, line = assembly.soil.whole.field, assembly.riser.line
     with counted(coupled) as counting:
@@ -130,7 +130,7 @@ def counted_run(scene: Mapping, coupled: bool = False, comm: Any = MPI.COMM_SELF
     return counts
 
 
-def changes(counts: Seen) -> Counter[tuple[bool, bool]]:
+def changes(counts: Counts) -> Counter[tuple[bool, bool]]:
     """How often one linear solver follows another within a step."""
     return Counter(pair for step in counts.alone for pair in pairwise(step))
 

@@ -46,7 +46,7 @@ def along_y(scene: Mapping) -> Mapping:
     return scene
 
 
-class Found(NamedTuple):
+class Results(NamedTuple):
     """At the end: unknowns and new meshes; by place, displacement, stress, plastic strain (rank 0); depth of the riser,
     its forces on the soil by length, and their sums on both; energies of all steps, with what they have dissipated.
     """
@@ -67,7 +67,7 @@ class Found(NamedTuple):
         return {name: values for name, values in self._asdict().items() if isinstance(values, np.ndarray)}
 
 
-def run(scene: Mapping, comm: Any = MPI.COMM_SELF) -> Found:
+def run(scene: Mapping, comm: Any = MPI.COMM_SELF) -> Results:
     """Take all stages of a scene; collective."""
     made, energies = build(scene_from_mapping(scene), comm), list[tuple[float, ...]]()
 
@@ -82,7 +82,7 @@ def run(scene: Mapping, comm: Any = MPI.COMM_SELF) -> Found:
     nodes, cells = (_by_place(places) for places in (mesh.points, mesh.points[mesh.cells].mean(axis=1)))
     free = int(np.count_nonzero(soil.field.owned & ~soil.field.prescribed))
     sums = np.concatenate([contact.force_on_riser(state), contact.force_on_soil(state)])
-    return Found(
+    return Results(
         comm.allreduce(free),
         0 if renewal is None else renewal.count,
         fields.displacement[nodes],

@@ -17,7 +17,7 @@ from riser_soil.accuracy.chosen_run import run_as_asked
 from riser_soil.assembly.hang_off import HungEnd, by_cable, hung_ends, settled, with_values
 from riser_soil.commands.app import app
 from riser_soil.errors import Interruption, SceneError
-from riser_soil.hang_off import FoundEnd, from_vertical, hung
+from riser_soil.hang_off import SolvedEnd, from_vertical, hung
 from riser_soil.results import Run
 from riser_soil.results.observer import Observer
 from riser_soil.scene.cross_checks import conflicts
@@ -43,7 +43,7 @@ def hanging(pipe: Mapping = CHAIN, end: str = "end", elements: int = 30, **asked
     return riser_scene(static(), pipe=pipe, length=L, elements=elements, start=start, end=last, gravity=9.81)
 
 
-def solved(scene: Mapping) -> tuple[Scene, FoundEnd]:
+def solved(scene: Mapping) -> tuple[Scene, SolvedEnd]:
     result = hung(scene_from_mapping(scene))
     assert result is not None
     (only,) = result.ends

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from tests.support.above_soil import SCENES, Seen, changes, counted_run
+from tests.support.above_soil import SCENES, Counts, changes, counted_run
 from tests.support.on_ranks import mpirun
 
 LINEAR = pytest.mark.parametrize("linear", ["direct", "kept", "iterative"])
@@ -16,18 +16,18 @@ FALLS = 16  # steps in which the pipe falls
 
 
 @cache
-def run(name: str, linear: str, coupled: bool = False) -> Seen:
+def run(name: str, linear: str, coupled: bool = False) -> Counts:
     return counted_run(SCENES[name](linear), coupled)
 
 
 @cache
-def run_on_two_ranks(name: str, linear: str) -> Seen:
+def run_on_two_ranks(name: str, linear: str) -> Counts:
     done = mpirun(2, "-m", "tests.support.above_soil", name, linear)
     assert done.returncode == 0, done.stderr
-    return Seen(**json.loads(done.stdout.splitlines()[-1]))
+    return Counts(**json.loads(done.stdout.splitlines()[-1]))
 
 
-def require_same_states(one: Seen, other: Seen) -> None:
+def require_same_states(one: Counts, other: Counts) -> None:
     """States of some 0.1 to 10 m; solved to 1e-7 of the forces, or to 1e-9."""
     assert np.abs(np.array(one.places) - other.places).max() < 1e-9
     assert np.abs(np.array(one.settled) - other.settled).max() < 1e-9

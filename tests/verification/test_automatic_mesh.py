@@ -32,7 +32,7 @@ class FineSlice(NamedTuple):
 FINE = FineSlice(4986.1, 0.0634)  # cells of D/128 over two diameters, 0.1 m at the sides
 
 
-class Found(NamedTuple):
+class Pressed(NamedTuple):
     """Force per length [N/m] at the given indentation, largest equivalent stress [Pa], plastic strain, unknowns."""
 
     force: float
@@ -84,7 +84,7 @@ def lifted_pipe(law: Mapping, weight: float = 717.0, height: float = 0.05, eleme
     )
 
 
-def pushed(scene: Scene) -> Found:
+def pushed(scene: Scene) -> Pressed:
     assembly, state = build(scene, MPI.COMM_SELF), None
     for stage in scene.stages:
         state = take(assembly, stage, state)
@@ -95,16 +95,17 @@ def pushed(scene: Scene) -> Found:
     assert recovered is not None
     grid, fields = assembly.soil.whole.grid, recovered.output_fields()
     force = -float(assembly.soil.contact.force_on_soil(state)[2]) / float(grid.high[0] - grid.low[0])
-    return Found(force, fields.von_mises.max(), fields.plastic_strain.max(), 3 * len(assembly.soil.whole.field.points))
+    unknowns = 3 * len(assembly.soil.whole.field.points)
+    return Pressed(force, fields.von_mises.max(), fields.plastic_strain.max(), unknowns)
 
 
-def halved(scene: Mapping) -> tuple[Found, Found]:
+def halved(scene: Mapping) -> tuple[Pressed, Pressed]:
     """On automatic cells, and on half of them all."""
     read = scene_from_mapping(scene)
     return pushed(scaled(read)), pushed(scaled(read, across=0.5))
 
 
-def shown(auto: Found, half: Found) -> str:
+def shown(auto: Pressed, half: Pressed) -> str:
     """Force on automatic cells [N/m], and what half of them change of it and of the largest stress."""
     changes = (signed_percent([b / a - 1.0]) for a, b in ((auto.force, half.force), (auto.stress, half.stress)))
     return " | ".join([f"{auto.force:,.0f}", *changes])

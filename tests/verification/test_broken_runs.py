@@ -66,7 +66,7 @@ sys.exit(status)
 
 
 @dataclass(frozen=True)
-class Left:
+class Remains:
     """What a run has left: rows of its series, and frames of its riser; None where there is no file yet."""
 
     rows: int | None
@@ -89,19 +89,19 @@ def _start(command: list[str], folder: Path, settings: tuple[str, ...]) -> subpr
     return subprocess.Popen(call, cwd=ROOT, env=environment(), stdout=pipe, stderr=pipe, text=True)
 
 
-def look(folders: list[Path]) -> list[Left]:
+def look(folders: list[Path]) -> list[Remains]:
     """Reads all files of unfinished runs; AssertionError where one isn't whole, or says that it is finished."""
     drawn = [path for folder in folders if (path := folder / "riser.xdmf").exists()]
     times = dict(zip(drawn, times_by_vtk(drawn), strict=True))
     return [_look(folder, times.get(folder / "riser.xdmf")) for folder in folders]
 
 
-def _look(folder: Path, drawn: list[float] | None) -> Left:
+def _look(folder: Path, drawn: list[float] | None) -> Remains:
     refuse(folder, force=False, goes_on=True)  # the next run may have it
     if not (folder / "results.nc").exists():
         assert not (folder / "summary.json").exists()
         assert _is_refused(folder)
-        return Left(None, None if drawn is None else len(drawn))
+        return Remains(None, None if drawn is None else len(drawn))
     run = Run(folder)
     time = run.time
     assert np.all(np.diff(time) > 0.0)
@@ -113,7 +113,7 @@ def _look(folder: Path, drawn: list[float] | None) -> Left:
     if drawn is not None:
         both = min(len(drawn), len(time))
         np.testing.assert_array_equal(drawn[:both], time[:both])
-    return Left(len(time), None if drawn is None else len(drawn))
+    return Remains(len(time), None if drawn is None else len(drawn))
 
 
 def _is_refused(folder: Path) -> bool:

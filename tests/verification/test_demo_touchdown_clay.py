@@ -10,7 +10,7 @@ import pytest
 
 from demos.compute import compute
 from demos.page import ROOT, all_pages, block, places
-from demos.touchdown_clay.run import AT_REST, COARSER, HERE, PAGE, SCENE, figures, stiffness, told_of
+from demos.touchdown_clay.run import AT_REST, COARSER, HERE, PAGE, SCENE, figures, sentences, stiffness
 from riser_soil.results import Run
 from riser_soil.scene.reader import read_scene
 from tests.support.pages import same_figures, text
@@ -37,7 +37,7 @@ def test_page_shows_figures_as_computed(demo: WatchedRun, name: str, computed: o
 @pytest.mark.verify
 def test_pages_tell_what_a_run_gives(demo: WatchedRun, tmp_path: Path) -> None:
     """README.md, the tutorial and the demo's page; `make figures` writes them anew."""
-    texts = told_of(Run(demo.folder), compute(SCENE, tmp_path, COARSER, AT_REST))
+    texts = sentences(Run(demo.folder), compute(SCENE, tmp_path, COARSER, AT_REST))
     stated = {page: places(page.read_text(encoding="utf-8")) for page in all_pages()}
     assert {name for names in stated.values() for name in names if name.startswith("demo ")} == texts.keys()
     assert COARSER in text(ROOT / "docs/tutorial_clay.md"), "the page has the command of the coarser run"

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from riser_soil.core.arrays import Array
-from tests.support.half_soil import Found, along_y, pressed, run
+from tests.support.half_soil import Results, along_y, pressed, run
 from tests.support.on_ranks import mpirun
 
 SAME = 1e-8  # of the largest, where Newton's tolerance of 1e-11 leaves some 1e-9
@@ -25,7 +25,7 @@ def apart(values: Mapping[str, Array], wanted: Mapping[str, Array]) -> dict[str,
 
 
 @cache
-def whole(model: str) -> Found:
+def whole(model: str) -> Results:
     return run(pressed("whole", model=model))
 
 
@@ -67,7 +67,7 @@ def test_so_is_half_where_nodes_lie_in_the_plane(model: str) -> None:
 def test_two_ranks_find_the_same(model: str) -> None:
     done = mpirun(2, "-m", "tests.support.half_soil", model)
     assert done.returncode == 0, done.stderr
-    result = Found(**json.loads(done.stdout.splitlines()[-1]))
+    result = Results(**json.loads(done.stdout.splitlines()[-1]))
     assert result.unknowns == whole(model).unknowns / 2
     assert result.renewals == whole(model).renewals
     compared = {name: np.asarray(getattr(result, name)) for name in whole(model).compared}

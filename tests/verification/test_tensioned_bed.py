@@ -34,7 +34,7 @@ DECADES = tuple(10.0**power for power in range(-2, 5))
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class BedShape:
     """Nodes (nn,) of a beam on its bed: arc and height over the bed's surface [m], slope, moment [N.m]. touchdown: arc
     [m].
     """
@@ -46,7 +46,7 @@ class Found:
     touchdown: float
 
 
-def lying(k: float, length: float, size: float, method: str, *loads: Any, tension: float = H) -> Found:
+def lying(k: float, length: float, size: float, method: str, *loads: Any, tension: float = H) -> BedShape:
     """Pinned at the bed's surface, pulled at its free end."""
     depth = WEIGHT / k
     pull = {"at": "end", "force": [tension, 0.0, 0.0], "history": [[0.0, 1.0], [1.0, 1.0]]}
@@ -64,7 +64,7 @@ def lying(k: float, length: float, size: float, method: str, *loads: Any, tensio
         gravity=9.81,
         water={"density": 1000.0},
     )
-    assembly, results = built(scene), list[Found]()
+    assembly, results = built(scene), list[BedShape]()
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
         riser, line = riser_record(assembly.riser, stepper), assembly.riser.line
@@ -72,7 +72,7 @@ def lying(k: float, length: float, size: float, method: str, *loads: Any, tensio
         tangent = line.trial(stepper.now).turn.tangent
         slope = np.append(tangent[:, 0, 1] / tangent[:, 0, 0], tangent[-1, 1, 1] / tangent[-1, 1, 0])
         touchdown = assembly.riser.seabed.touchdown_arc(stepper.now)
-        results.append(Found(line.arc, riser.position[:, 2], slope, riser.bending_moment, touchdown))
+        results.append(BedShape(line.arc, riser.position[:, 2], slope, riser.bending_moment, touchdown))
 
     run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(watch), Timer.new())
     return results[-1]
@@ -117,7 +117,7 @@ def matched_layer(K: float) -> Layer:
     return Layer(1.0 + C, slope, -C - slope, -C - slope + float(np.sqrt(F**2 + 2.0 * G)) - F)
 
 
-def found_layer(K: float, method: str = "line") -> Layer:
+def computed_layer(K: float, method: str = "line") -> Layer:
     """The elements' answer: its end is pulled up by the weight of what hangs below it in a catenary."""
     decay = float(roots(K * EI).real.min())
     hanging = 14.0 + K**-0.5  # m; what the free end does has died out at the touchdown point
@@ -145,7 +145,7 @@ def test_closed_form_of_the_layer(K: float) -> None:
 @pytest.mark.parametrize("K", DECADES)
 def test_layer_over_six_decades(K: float) -> None:
     """At K = 1 the touchdown point goes as the root of 1 - 1/K, so it tells every small error there."""
-    length, exact = found_layer(K), layer(K)
+    length, exact = computed_layer(K), layer(K)
     assert length.moment == pytest.approx(exact.moment, rel=1e-3)
     assert length.slope == pytest.approx(exact.slope, rel=1e-3)
     assert length.end == pytest.approx(exact.end, abs=1e-3)
@@ -157,7 +157,7 @@ def test_layer_over_six_decades(K: float) -> None:
 @pytest.mark.parametrize("K", DECADES)
 def test_node_contact_over_six_decades(K: float) -> None:
     """On the same elements; up to a thousand times less exact."""
-    length, exact = found_layer(K, "node"), layer(K)
+    length, exact = computed_layer(K, "node"), layer(K)
     assert length.moment == pytest.approx(exact.moment, rel=4e-3)
     assert length.slope == pytest.approx(exact.slope, rel=4e-3)
     assert length.end == pytest.approx(exact.end, abs=2e-3)

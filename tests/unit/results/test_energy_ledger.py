@@ -26,7 +26,7 @@ DAMPED = GeneralizedAlpha.newmark(0.4225, 0.8)
 AVERAGE = GeneralizedAlpha.newmark()
 
 
-class Seen(NamedTuple):
+class WavingRun(NamedTuple):
     """Ledgers after each step; heights z, rates v and a before all steps and after each (steps + 1, n)."""
 
     ledgers: list[Ledger]
@@ -35,7 +35,7 @@ class Seen(NamedTuple):
     a: Array
 
 
-def balanced(chain: Chain, parts: list[Part], scheme: Scheme, v0: list[float], end: float, dt: float) -> Seen:
+def balanced(chain: Chain, parts: list[Part], scheme: Scheme, v0: list[float], end: float, dt: float) -> WavingRun:
     system = System(MPI.COMM_SELF, Model([chain], parts), Timer.new())
     newton = Newton(system, NewtonSettings(1e-12, 30, 1e-14))  # the springs' forces are rounded to some 1e-14 of them
     nothing = np.zeros(chain.size)
@@ -50,10 +50,10 @@ def balanced(chain: Chain, parts: list[Part], scheme: Scheme, v0: list[float], e
         path.append((chain.z, stepper.now.v, stepper.now.a))
     newton.destroy()
     system.destroy()
-    return Seen(ledgers, *(np.array(column) for column in zip(*path, strict=True)))
+    return WavingRun(ledgers, *(np.array(column) for column in zip(*path, strict=True)))
 
 
-def swing(scheme: Scheme, dt: float = 0.1, cubic: float = 0.0) -> Seen:
+def swing(scheme: Scheme, dt: float = 0.1, cubic: float = 0.0) -> WavingRun:
     """A chain under weight, its first height prescribed."""
     chain = Chain(np.arange(4.0), prescribed=True)
     parts: list[Part] = [Springs(chain, 1.0, 20.0, cubic, weight=1.0), Inertia(chain, 1.0)]

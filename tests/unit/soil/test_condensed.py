@@ -51,7 +51,7 @@ def scene(contact: str, kind: str, dimension: int, soil: str) -> Mapping:
     return mapping
 
 
-class Taken:
+class Recording:
     """Both stages, with what each accepted step tells."""
 
     def __init__(self, mapping: Mapping) -> None:
@@ -94,8 +94,8 @@ SIZED_AS = dict.fromkeys(("soil's work", "all work", "braking"), "strain energy"
 
 
 @cache
-def steps_of(contact: str, kind: str, dimension: int, soil: str) -> Taken:
-    return Taken(scene(contact, kind, dimension, soil))
+def steps_of(contact: str, kind: str, dimension: int, soil: str) -> Recording:
+    return Recording(scene(contact, kind, dimension, soil))
 
 
 @pytest.mark.parametrize(("contact", "kind", "dimension"), CASES)
