@@ -26,6 +26,7 @@ from tests.support.driven_stage import built_of
 from tests.support.left_run import leave_after
 from tests.support.line_scenes import lines_scene, mooring, pin
 from tests.support.run_on_ranks import ran as ran_on
+from tests.support.runs import run_of
 from tests.support.said import line_with
 from tests.support.scenes import dynamic, line
 
@@ -81,11 +82,6 @@ def let_go(
     return lines_scene(lines={"rope": line("rope", 2.0, 2, *ends)}, **sections) | more
 
 
-def ran(scene: dict[str, Any], folder: Path) -> Run:
-    run(scene_from_mapping(scene), folder)
-    return Run(folder)
-
-
 def force_under(run: Run, body: str) -> np.ndarray:
     return np.asarray(run[f"bodies/{body}/contact_force"][-1])
 
@@ -106,7 +102,7 @@ def lying(span: float, length: float, height: float) -> float:
 def test_a_clump_between_two_chains_that_lie_on_the_bed(tmp_path: Path) -> None:
     """Top tensions are those of chains that end in a lying part, H + w h; the clump rests with all of its weight."""
     span, length, height = 50.0, 66.0, DEPTH - 0.5 * CHAIN["outer_diameter"]
-    run = ran(between_chains(span=span, length=length, contact=LIES, elements=60), tmp_path)
+    run = run_of(between_chains(span=span, length=length, contact=LIES, elements=60), tmp_path)
     H = lying(span, length, height)
     for name, top in (("left", 0), ("right", -1)):
         tension = run.of_line(name)["effective_tension"][-1]
@@ -125,7 +121,7 @@ def test_a_clump_that_taut_chains_lift_in_part(tmp_path: Path) -> None:
     """
     scene = between_chains(span=50.0, length=LONG)
     scene["bodies"]["clump"]["position"] = [0.0, 0.0, -DEPTH - 0.3]
-    run = ran(scene, tmp_path)
+    run = run_of(scene, tmp_path)
     place, pressed = run["bodies/clump/position"][-1], force_under(run, "clump")
     _, top = pulls(np.array([0.0, place[2]]), np.array([50.0, 0.0]), WET, CHAIN["EA"], LONG)
     lifted = WET * LONG + top[1]  # what the top does not bear
@@ -153,7 +149,7 @@ def test_friction_holds_a_body_on_a_slope_below_its_angle(tmp_path: Path) -> Non
         "contact": {"friction": {"axial": 0.1, "mobilisation": 1.0e-6}},
     }
     bodies = {"held": ball(0.0, 0.30), "slides": ball(5.0, 0.20), "smooth": ball(-5.0, 0.0)}
-    run = ran(let_go(bodies, duration, 0.005, **ground), tmp_path)
+    run = run_of(let_go(bodies, duration, 0.005, **ground), tmp_path)
     for name, mu in (("slides", 0.2), ("smooth", 0.0)):
         way = run[f"bodies/{name}/position"][-1] - run[f"bodies/{name}/position"][0]
         slid = 0.5 * G * (math.sin(angle) - mu * math.cos(angle)) * duration**2
@@ -178,7 +174,7 @@ def test_bodies_that_fall_onto_the_bed_come_to_rest_and_no_energy_is_made(tmp_pa
     humps.write_text("x [m],y [m],z [m]\n" + "\n".join(rows) + "\n")
     rough = {"friction": {"axial": 0.5, "mobilisation": 1.0e-4}}
     ground = {"seabed": {"kind": "rigid", "grid": str(humps)}, "contact": rough}
-    run = ran(let_go({"ball": ball, "sled": sled}, 4.0, 0.01, **ground), tmp_path / "run")
+    run = run_of(let_go({"ball": ball, "sled": sled}, 4.0, 0.01, **ground), tmp_path / "run")
     radius = (3.0 * 0.1 / (4.0 * math.pi)) ** (1.0 / 3.0)
     assert run["bodies/ball/position"][-1][2] == pytest.approx(radius, abs=2e-3)
     for name, mass in (("ball", 200.0), ("sled", 500.0)):

@@ -60,6 +60,7 @@ from tests.support.line_scenes import (
     shaken,
     with_line_named,
 )
+from tests.support.runs import run_of
 from tests.support.said import line_with, lines_with, telling
 from tests.support.scenes import dynamic, prescribed, riser_scene, static
 from tests.support.vtk_reading import read_by_vtk
@@ -67,14 +68,9 @@ from tests.support.vtk_reading import read_by_vtk
 ELEMENTS, TIME_STEP = (setting for setting in SETTINGS if setting.name in ("elements", "time_step"))
 
 
-def ran(scene: dict[str, Any], folder: Path) -> Run:
-    run(scene_from_mapping(scene), folder)
-    return Run(folder)
-
-
 def test_a_buoy_on_three_lines_rests_where_catenaries_balance_it(tmp_path: Path) -> None:
     """A third of its buoyancy is each line's upward pull; the anchors' circle gives H. The joints' gap is V/k."""
-    run = ran(mooring(elements=40), tmp_path)
+    run = run_of(mooring(elements=40), tmp_path)
     V = (POINT["volume"] * RHO - POINT["mass"]) * G / 3.0
     H = brentq(lambda H: spans(H, V, WET, CHAIN["EA"], LENGTH)[0] - RADIUS, 1.0, 1e6)
     z = spans(H, V, WET, CHAIN["EA"], LENGTH)[1] - DEPTH
@@ -97,7 +93,7 @@ def test_a_buoy_on_one_line_rises_over_its_anchor(body: dict[str, Any], tmp_path
     scene["lines"]["east"]["segments"][0]["length"] = L = 75.0
     scene["joints"]["east_top"]["between"][1]["offset"] = [0.0, 0.0, -arm]
     scene["bodies"]["buoy"]["position"] = [RADIUS + 4.0, 1.0, -22.0]
-    run = ran(scene, tmp_path)
+    run = run_of(scene, tmp_path)
     net = (POINT["volume"] * RHO - POINT["mass"]) * G
     stretched = L + (net * L - 0.5 * WET * L**2) / CHAIN["EA"]
     assert run["bodies/buoy/position"][-1] == pytest.approx([RADIUS, 0.0, stretched + arm - DEPTH], abs=1e-3)
@@ -121,7 +117,7 @@ def test_a_force_pulls_a_buoy_aside_as_its_catenary_lets_it(tmp_path: Path) -> N
     """There it stays in a stage in motion, as the load does."""
     F, net = 6.0e3, (POINT["volume"] * RHO - POINT["mass"]) * G
     at_rest = {"name": "wait", "kind": "dynamic", "duration": 0.5, "time_step": 0.05}
-    run = ran(on_one_line(POINT, {"force": [0.0, F, 0.0]}, at_rest), tmp_path)
+    run = run_of(on_one_line(POINT, {"force": [0.0, F, 0.0]}, at_rest), tmp_path)
     aside, high = spans(F, net, WET, CHAIN["EA"], 75.0)
     for n in (0, -1):
         assert run["bodies/buoy/position"][n] == pytest.approx([RADIUS, aside, high - DEPTH], abs=1e-3)
@@ -130,7 +126,7 @@ def test_a_force_pulls_a_buoy_aside_as_its_catenary_lets_it(tmp_path: Path) -> N
 def test_a_moment_heels_a_buoy_until_it_is_righted(tmp_path: Path) -> None:
     """By buoyancy above, weight below, and the line's pull at its arm."""
     M, B, W = 9.0e3, RIGID["volume"] * RHO * G, RIGID["mass"] * G
-    run = ran(on_one_line(RIGID, {"moment": [0.0, M, 0.0]}), tmp_path)
+    run = run_of(on_one_line(RIGID, {"moment": [0.0, M, 0.0]}), tmp_path)
     righting = B * RIGID["centre_of_buoyancy"][2] - W * RIGID["centre_of_gravity"][2] + (B - W) * 1.0
     assert run["bodies/buoy/rotation"][-1] == pytest.approx([0.0, math.asin(M / righting), 0.0], abs=1e-5)
 
@@ -147,7 +143,7 @@ def test_steps_hit_the_bends_of_a_load_on_a_body() -> None:
 
 def test_a_lazy_s_over_an_arch_rests_where_catenaries_balance_it(tmp_path: Path) -> None:
     """Tensions within 1 % of a root finder's on elastic catenaries; the arch's place and angle, too."""
-    run = ran(lazy_s(), tmp_path)
+    run = run_of(lazy_s(), tmp_path)
     (x, z, angle), tensions = lazy_s_by_catenaries()
     assert run["bodies/arch/position"][-1] == pytest.approx([x, 0.0, z], abs=0.05)
     assert run["bodies/arch/rotation"][-1] == pytest.approx([0.0, -angle, 0.0], abs=2e-3)
@@ -201,7 +197,7 @@ def test_lines_that_keep_to_a_plane_are_those_of_space(along: int, tmp_path: Pat
     two, alone = in_two(riser), riser | {"dimension": 2}
     if along == 1:
         two, alone = turned(two), turned(alone)
-    space, plane, one = (ran(each, tmp_path / str(n)) for n, each in enumerate((two, two | {"dimension": 2}, alone)))
+    space, plane, one = (run_of(each, tmp_path / str(n)) for n, each in enumerate((two, two | {"dimension": 2}, alone)))
     assert plane.summary["dofs"]["riser"] < 0.6 * space.summary["dofs"]["riser"]
     for name in ("low", "high"):
         known, line = space.of_line(name), plane.of_line(name)
@@ -227,8 +223,8 @@ def _turned(value: Any) -> Any:
 
 def test_two_lines_clamped_together_are_one(tmp_path: Path) -> None:
     """But for what the joint gives, a hundredth of an element. They begin as catenaries with a kink."""
-    whole = ran(one_riser(), tmp_path / "whole")
-    two = ran(in_two(one_riser()), tmp_path / "two")
+    whole = run_of(one_riser(), tmp_path / "whole")
+    two = run_of(in_two(one_riser()), tmp_path / "two")
     low, high = two.of_line("low"), two.of_line("high")
     for name, at_rest in (("effective_tension", 1e-3), ("bending_moment", 1e-2)):
         joined = np.concatenate([low[name], high[name][:, 1:]], axis=1)
@@ -240,12 +236,12 @@ def test_two_lines_clamped_together_are_one(tmp_path: Path) -> None:
 
 def test_the_energy_of_bodies_balances(tmp_path: Path) -> None:
     """A rigid body with all that it may have is shaken by its mooring; in waves and a current, too."""
-    calm = ran(mooring(shaken(), body=RIGID), tmp_path / "calm")
+    calm = run_of(mooring(shaken(), body=RIGID), tmp_path / "calm")
     waves = {"airy": {"height": 2.0, "period": 6.0}, "ramp": 1.0}
     water: dict[str, Any] = {"density": RHO, "surface_level": 0.0, "depth": DEPTH, "waves": waves}
     water["current"] = {"profile": [[-DEPTH, 0.2, 0.1], [0.0, 0.6, 0.3]]}
     rough = mooring(shaken(), body=RIGID | {"position": [0.0, 0.0, -1.0]}, water=water)
-    for result in (calm, ran(rough, tmp_path / "rough")):
+    for result in (calm, run_of(rough, tmp_path / "rough")):
         energy = result.summary["stages"][1]["energy"]
         assert energy["turned_over"] > 1e3
         assert abs(energy["relative_residual"]) < 5e-3
@@ -287,7 +283,7 @@ def test_lines_tied_along_their_length_keep_their_distance(tmp_path: Path) -> No
         ],
         "output": {"clearance": [{"between": ["light", "heavy"]}]},
     }
-    run = ran(scene, tmp_path)
+    run = run_of(scene, tmp_path)
     light, heavy = (run.of_line(name) for name in lines)
     assert len(light.arc) == 11, "three arcs have got nodes of their own"
     for arc in (12.0, 25.0, 38.0):
@@ -319,7 +315,7 @@ def test_a_line_with_free_ends_hangs_on_its_ties(tmp_path: Path) -> None:
     }
     pipe = {"EA": 1.0e8, "EI": 1.0e6, "GJ": 1.0e6, "submerged_weight": 50.0}
     scene = {"line_types": {"pipe": pipe}, "lines": lines, "joints": ties, "stages": [static()]}
-    run = ran(scene, tmp_path)
+    run = run_of(scene, tmp_path)
     ends = run.of_line("above").summary["stages"][0]["final"]
     assert ends["start"]["force"][2] + ends["end"]["force"][2] == pytest.approx(2.0 * 50.0 * 20.0, rel=1e-6)
     gap = run.of_line("above")["position"][-1] - run.of_line("below")["position"][-1]
@@ -386,7 +382,7 @@ def test_what_is_wrong_with_a_line_has_its_path(tmp_path: Path) -> None:
 
 def test_files_of_a_run(tmp_path: Path) -> None:
     output = {"clearance": [{"between": ["east", "north"], "beyond": 20.0}]}
-    run = ran(mooring(shaken(0.2), output=output), tmp_path)
+    run = run_of(mooring(shaken(0.2), output=output), tmp_path)
     assert run.lines == NAMES
     written = {f"line_{name}.{kind}" for name in NAMES for kind in ("xdmf", "vtkhdf")}
     assert written <= {path.name for path in tmp_path.iterdir()}
@@ -436,7 +432,7 @@ def test_files_of_a_run(tmp_path: Path) -> None:
 
 def test_statistics_of_bodies_joints_and_clearances(tmp_path: Path) -> None:
     output = {"clearance": [{"between": ["east", "north"], "beyond": 20.0}]}
-    run = ran(mooring(shaken(1.2), output=output), tmp_path)
+    run = run_of(mooring(shaken(1.2), output=output), tmp_path)
     moving = run["stage"] == 1
     forces = np.linalg.norm(run["joints/east_top/force"], axis=1)
     assert np.ptp(forces[moving]) > 0.0
@@ -464,7 +460,7 @@ def test_indicators_of_a_line_are_those_of_a_riser(tmp_path: Path) -> None:
     ends = {"start": prescribed(0.0, 0.0, 0.0), "end": prescribed(20.0, 0.0, 10.0)}
     more = ends | {"dimension": 3, "gravity": G, "riser": {"initial": "catenary"}}
     scene = riser_scene(static(), moved, pipe=pipe, length=25.0, elements=10, **more)
-    alone, several = (ran(each, tmp_path / name) for name, each in (("riser", scene), ("lines", as_line(scene))))
+    alone, several = (run_of(each, tmp_path / name) for name, each in (("riser", scene), ("lines", as_line(scene))))
     expected = [stage["indicators"] for stage in alone.summary["stages"]]
     assert [*expected[0]] == ["bending"]
     assert [*expected[1]] == ["bending", "time_step", "impact"]
@@ -634,7 +630,7 @@ def drifting(x: float, y: float) -> dict[str, Any]:
 @pytest.mark.verify
 def test_dynamic_relaxation_finds_where_a_buoy_drifts_to(tmp_path: Path) -> None:
     """Wherever it begins: where its chain bears what the current's drag and its buoyancy on the wet share put there."""
-    each = [ran(drifting(*at), tmp_path / str(n)) for n, at in enumerate(((0.0, 0.0), (196.0, 36.0)))]
+    each = [run_of(drifting(*at), tmp_path / str(n)) for n, at in enumerate(((0.0, 0.0), (196.0, 36.0)))]
     assert [run.summary["stages"][0]["method"] for run in each] == ["relaxation", "relaxation"]
     one, other = (run["bodies/buoy/position"][-1] for run in each)
     assert one == pytest.approx(other, abs=1e-4)

@@ -37,3 +37,8 @@ def difference_tangent(part: Part, state: State, weights: Weights, h: float = 1e
 
 def error(K: Array, expected: Array) -> float:
     return float(np.abs(K - expected).max() / np.abs(expected).max())
+
+
+def orders(errors: list[float]) -> Array:
+    """Observed orders between successive halvings of a size."""
+    return np.log2(np.array(errors[:-1]) / np.array(errors[1:]))

@@ -95,3 +95,10 @@ def assemble(soil: Soil, state: State) -> sp.csr_matrix:
     cols = np.broadcast_to(block.cols[:, None, :], block.shape).ravel()
     size = soil.field.size
     return sp.coo_matrix((values["soil"].ravel(), (rows, cols)), shape=(size, size)).tocsr()
+
+
+def force(soil: Soil, state: State) -> Array:
+    """Forces (n,) of the soil that count at the end of a step [N]."""
+    forces = Forces.zeros(soil.field.size)
+    soil.residual(state, forces)
+    return forces.end

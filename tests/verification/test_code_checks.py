@@ -20,9 +20,9 @@ from riser_soil.scene.problem import dotted
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.sizes import doubts
 from riser_soil.scene.variants import at_offset
-from riser_soil.whole_run import run
 from tests.support.interrupted_run import differing, differing_rows, resumed, summary, whole
 from tests.support.run_on_ranks import ran
+from tests.support.runs import run_of
 from tests.support.said import line_with
 from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
 
@@ -66,15 +66,10 @@ def hanging(*checks: Mapping, pipe: Mapping = STEEL, water: float = 100.0, **pre
     return scene | {"code_check": list(checks)}
 
 
-def finished(scene: Mapping, folder: Path) -> Run:
-    run(scene_from_mapping(scene), folder)
-    return Run(folder)
-
-
 @pytest.fixture(scope="module")
 def dnv(tmp_path_factory: pytest.TempPathFactory) -> Run:
     check = DNV | {"functional_stage": "hang"}
-    return finished(hanging(check), tmp_path_factory.mktemp("dnv") / "run")
+    return run_of(hanging(check), tmp_path_factory.mktemp("dnv") / "run")
 
 
 def worst(functional: np.ndarray, environmental: np.ndarray) -> np.ndarray:
@@ -175,7 +170,7 @@ def test_largest_utilisation_is_not_made_of_largest_moment_and_tension(dnv: Run)
 
 
 def test_functional_effects_are_those_of_the_last_static_stage_by_default(dnv: Run, tmp_path: Path) -> None:
-    other = finished(hanging(DNV), tmp_path / "run")
+    other = run_of(hanging(DNV), tmp_path / "run")
     assert other["effective_tension"] == pytest.approx(dnv["effective_tension"], rel=1e-12)
     first, second = (each["combined_loading_utilisation"] for each in (dnv, other))
     assert second[0] == pytest.approx(first[0], rel=1e-12)
@@ -192,14 +187,14 @@ def still(tmp_path_factory: pytest.TempPathFactory) -> Run:
     """Without current, at rest."""
     scene = hanging()
     scene["stages"] = scene["stages"][:1]
-    return finished(scene, tmp_path_factory.mktemp("still") / "run")
+    return run_of(scene, tmp_path_factory.mktemp("still") / "run")
 
 
 def test_functional_effects_of_a_run_without_current(still: Run, tmp_path: Path) -> None:
     scene = hanging(DNV | {"functional_run": str(still.folder), "minimum_pressure": "contents"})
     scene["water"] = IN_CURRENT
     assert not [each for each in warnings_of(scene) if "current" in each]
-    done = finished(scene, tmp_path / "run")
+    done = run_of(scene, tmp_path / "run")
     moments, pulls = (
         [np.stack([run[name][-1:] if run is still else run[name] for name in names]) for run in (still, done)]
         for names in (("bending_moment_y", "bending_moment_z"), ("effective_tension",) * 2)
@@ -214,7 +209,7 @@ def test_functional_effects_of_a_run_without_current(still: Run, tmp_path: Path)
     m, T = M_d / (strength * (D - T2) ** 2 * T2), T_d / (strength * np.pi * (D - T2) * T2)
     expected = GAMMA * (m * np.sqrt(1.0 - q**2) + T**2) + q**2
     assert done["combined_loading_utilisation"] == pytest.approx(expected, rel=1e-9)
-    by_stage = finished(scene | {"code_check": [DNV | {"minimum_pressure": "contents"}]}, tmp_path / "other")
+    by_stage = run_of(scene | {"code_check": [DNV | {"minimum_pressure": "contents"}]}, tmp_path / "other")
     assert by_stage["combined_loading_utilisation"][0].max() < 0.995 * expected[0].max()
 
 
@@ -245,25 +240,25 @@ def test_a_functional_run_has_the_same_nodes(change: Mapping, message: str, stil
     scene["riser"] |= change
     scene["stages"] = scene["stages"][:1]
     if not message:
-        assert finished(scene, tmp_path / "run").summary["finished"]
+        assert run_of(scene, tmp_path / "run").summary["finished"]
         return
     with pytest.raises(SceneError, match=rf"code_check\.0\.functional_run.*{message}"):
-        finished(scene, tmp_path / "run")
+        run_of(scene, tmp_path / "run")
     assert not (tmp_path / "run" / "results.nc").exists()
 
 
 def test_a_functional_run_has_moments(tmp_path: Path) -> None:
     plain = hanging(pipe={key: value for key, value in STEEL.items() if key != "wall"})
     plain["stages"] = plain["stages"][:1]
-    done = finished(plain, tmp_path / "plain")
+    done = run_of(plain, tmp_path / "plain")
     with pytest.raises(SceneError, match=r"functional_run.*no bending_moment_y.*wall"):
-        finished(hanging(DNV | {"functional_run": str(done.folder)}), tmp_path / "run")
+        run_of(hanging(DNV | {"functional_run": str(done.folder)}), tmp_path / "run")
 
 
 def test_accidental_effects_have_a_factor_of_their_own(tmp_path: Path) -> None:
     """In ALS all factors are 1: with any share of stages the design effects are those of the run."""
     check = DNV | {"limit_state": "ALS", "functional_stage": "hang", "accidental_stage": "current"}
-    done = finished(hanging(check), tmp_path / "run")
+    done = run_of(hanging(check), tmp_path / "run")
     inside, outside = done["internal_pressure"] + DESIGN - PRESSURE, done["external_pressure"]
     bursts = 2.0 / np.sqrt(3.0) * 2.0 * T2 / (D - T2) * min(FY, FU / 1.15)
     q = (inside - outside) / bursts
@@ -279,7 +274,7 @@ def test_accidental_effects_have_a_factor_of_their_own(tmp_path: Path) -> None:
 @pytest.mark.parametrize("method", [1, 2])
 def test_api_by_both_methods(method: int, tmp_path: Path) -> None:
     check = API | {"method": method, "design_factor": 0.75, "minimum_pressure": "contents"}
-    done = finished(hanging(check, pressure=0.0), tmp_path / "run")
+    done = run_of(hanging(check, pressure=0.0), tmp_path / "run")
     inside, outside = done["internal_pressure"], done["external_pressure"]
     t = T2 + T_CORR
     bursts = 0.45 * (SMYS + SMTS) * np.log(D / (D - 2.0 * T2))
@@ -306,7 +301,7 @@ def test_api_design_factors_by_case(tmp_path: Path) -> None:
     for case in ("operating", "survival"):
         scene = hanging(API | {"method": 2, "case": case, "minimum_pressure": "contents"})
         scene["stages"] = scene["stages"][:1]
-        used.append(finished(scene, tmp_path / case)["combined_loading_utilisation"])
+        used.append(run_of(scene, tmp_path / case)["combined_loading_utilisation"])
     assert used[0] == pytest.approx(used[1] / 0.8, rel=1e-12)
 
 
@@ -329,7 +324,7 @@ COATED = 0.15  # m, of the coat, which bears the water on itself
 def test_von_mises_stress_by_api_rp_2rd(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Stress of a coated pipe, the larger under the design pressure and empty; all recorded instants."""
     coated = STEEL | {"outer_diameter": COATED, "wall": {"outer_diameter": D}}
-    done = finished(hanging(RP, pipe=coated, pressure=0.0), tmp_path / "run")
+    done = run_of(hanging(RP, pipe=coated, pressure=0.0), tmp_path / "run")
     area, I = 0.25 * np.pi * (D**2 - BORE**2), np.pi / 64.0 * (D**4 - BORE**4)
     design = done["internal_pressure"] + LOW
     under = [von_mises_of_wall(done, inside, area, I) for inside in (design, 0.0 * design)]
@@ -366,7 +361,7 @@ def test_each_line_type_by_its_own_code(tmp_path: Path, capsys: pytest.CaptureFi
     scene["line_types"]["flexible"] = flexible
     half = {"length": 75.0, "elements": 15}
     scene["riser"]["segments"] = [{"line_type": name} | half for name in ("flexible", "pipe")]
-    done = finished(scene, tmp_path / "run")
+    done = run_of(scene, tmp_path / "run")
     bent, moving = done["bend_radius_utilisation"], done["stage"] == 2
     assert np.isnan(bent).all(axis=0).tolist() == [False] * 16 + [True] * 15
     radius = np.where(moving, 20.0, 10.0)[:, None]
@@ -404,7 +399,7 @@ def test_a_run_goes_on_with_what_was_functional(tmp_path: Path) -> None:
 def test_without_a_check_nothing_of_it_is_there(tmp_path: Path) -> None:
     scene = hanging()
     scene["stages"] = scene["stages"][:1]
-    done = finished(scene, tmp_path / "run")
+    done = run_of(scene, tmp_path / "run")
     assert not [name for name in done.variables if name.startswith(("code", "bursting", "combined"))]
     assert "code_check" not in done.summary["stages"][0]
     assert done.summary["parts"]["left_out"]["code check"] == "the scene has no code_check"

@@ -9,6 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from riser_soil.core.arrays import Array
+from tests.support.differences import orders
 from tests.support.scenes import AVERAGE, Mapping, dynamic, in_waves, prescribed, riser_scene, static
 from tests.support.stage_histories import StageHistory, distance, stage_histories
 
@@ -17,11 +18,6 @@ PIPE: Mapping = {"EA": 1.0e6, "EI": 2.0e3, "GJ": 2.0e3, "outer_diameter": D, "ma
 PIPE |= {"drag": {"normal": CD, "tangential": 0.05}, "added_mass": {"normal": CA, "tangential": 0.2}}
 ROUGH = 0.5 * RHO * D * CD
 DISPLACED = RHO * 0.25 * np.pi * D**2
-
-
-def orders(errors: list[float]) -> Array:
-    """Observed orders of errors under halving."""
-    return np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
 
 
 # Current

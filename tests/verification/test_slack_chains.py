@@ -14,9 +14,8 @@ from ruamel.yaml import YAML
 
 from riser_soil.results import Run
 from riser_soil.riser.catenary import catenary
-from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.whole_run import run
 from tests.support.on_ranks import mpirun
+from tests.support.runs import run_of
 from tests.support.said import lines_with
 from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
 
@@ -39,11 +38,6 @@ def slack(length: float, elements: int, turned: bool = False, **more: Any) -> Ma
     return riser_scene(*stages, **(options | ends | more))
 
 
-def done(scene: Mapping, folder: Path) -> Run:
-    run(scene_from_mapping(scene), folder)
-    return Run(folder)
-
-
 @pytest.mark.parametrize(
     ("length", "elements", "more"),
     [
@@ -61,7 +55,7 @@ def test_a_heaped_chain_hangs_by_its_own_weight(
     length: float, elements: int, more: dict[str, Any], tmp_path: Path
 ) -> None:
     """The top bears what hangs down to the seabed, whatever the mesh, the anchor nothing, and no node pushes."""
-    run = done(slack(length, elements, **more), tmp_path)
+    run = run_of(slack(length, elements, **more), tmp_path)
     ends = ("start_force", "end_force") if more.get("turned") else ("end_force", "start_force")
     top, anchor = (run[name][-1] for name in ends)
     assert top[2] == pytest.approx(W * HEIGHT, rel=1e-3)
@@ -91,7 +85,7 @@ def test_floats_and_clumps_make_kinks(
     """
     scene = dict(slack(length, elements, water={"density": WATER}))
     scene["riser"] |= {"attachments": [hung(*each) for each in hangs]}
-    run = done(scene, tmp_path)
+    run = run_of(scene, tmp_path)
     ends = np.array([0.0, 0.0, 0.0]), np.array([SPAN, 0.0, HEIGHT])
     cable = catenary(np.linspace(0.0, length, 2), *ends, W, CHAIN["EA"], level=0.0, points=np.array(hangs))
     assert np.linalg.norm(run["end_force"][-1]) == pytest.approx(cable.tension[-1], rel=1.5e-3)
@@ -124,7 +118,7 @@ def test_a_slack_line_between_ends_above_each_other_hangs_in_two_legs(
     names = ("end", "start") if more.pop("turned", False) else ("start", "end")
     ends: Mapping = {name: prescribed(*at) for name, at in zip(names, (low, high), strict=True)}
     scene = riser_scene(static(), pipe=pipe, length=length, elements=elements, gravity=9.81, **ends, **more)
-    run = done(scene, tmp_path)
+    run = run_of(scene, tmp_path)
     lower, upper = (
         run[f"{name}_force"][-1][2] for name in (names if pipe["submerged_weight"] > 0.0 else names[::-1])
     )
@@ -146,12 +140,12 @@ def test_a_slack_line_between_ends_above_each_other_hangs_in_two_legs(
 )
 def test_what_lies_in_the_heap_does_not_count_at_the_top(more: dict[str, Any], tmp_path: Path) -> None:
     """A clump sinks in, friction holds what lies; the top bears what hangs."""
-    run = done(slack(1.3 * (SPAN + HEIGHT), 40, **more), tmp_path)
+    run = run_of(slack(1.3 * (SPAN + HEIGHT), 40, **more), tmp_path)
     assert run["end_force"][-1][2] == pytest.approx(W * HEIGHT, rel=1e-3)
 
 
 def test_a_heap_is_the_same_on_two_ranks(tmp_path: Path) -> None:
-    alone = done(slack(1.3 * (SPAN + HEIGHT), 10), tmp_path / "1")
+    alone = run_of(slack(1.3 * (SPAN + HEIGHT), 10), tmp_path / "1")
     with (tmp_path / "scene.yaml").open("w") as file:
         YAML().dump(slack(1.3 * (SPAN + HEIGHT), 10), file)
     ended = mpirun(2, "-m", "riser_soil", "run", "scene.yaml", "-o", "2", folder=tmp_path)
@@ -166,7 +160,7 @@ def heaved(elements: int, folder: Path) -> Run:
     stages = static(), dynamic(13.5, 0.1, motion=HEAVE) | {"time_step": "auto"}
     drag: Mapping = {"drag": {"normal": 1.2, "tangential": 0.1}, "added_mass": {"normal": 1.0, "tangential": 0.1}}
     water = {"surface_level": 130.0, "depth": 130.0}
-    return done(slack(1.3 * (SPAN + HEIGHT), elements, stages=stages, pipe=CHAIN | drag, water=water), folder)
+    return run_of(slack(1.3 * (SPAN + HEIGHT), elements, stages=stages, pipe=CHAIN | drag, water=water), folder)
 
 
 # N, of what hangs
@@ -212,7 +206,7 @@ def test_a_heap_lies_right_under_its_top(
     more = dict(more)
     turned = more.pop("turned", False)
     ends: Mapping = {"start": high, "end": low} if turned else {"start": low, "end": high}
-    run = done(heap_under(length * HEIGHT, elements, **ends, **more), tmp_path)
+    run = run_of(heap_under(length * HEIGHT, elements, **ends, **more), tmp_path)
     top, anchor = (run[f"{name}_force"][-1] for name in (("start", "end") if turned else ("end", "start")))
     assert top[2] == pytest.approx(W * HEIGHT, rel=1e-3)
     assert np.linalg.norm(anchor) < PULLS * W * HEIGHT
@@ -223,7 +217,7 @@ def test_a_heap_lies_right_under_its_top(
 def test_two_legs_hang_side_by_side_to_one_heap(span: float, elements: int, tmp_path: Path) -> None:
     """Each bears its own weight down to the seabed."""
     ends: Mapping = {"start": prescribed(0.0, 0.0, HEIGHT), "end": prescribed(span, 0.0, HEIGHT)}
-    run = done(heap_under(2.5 * HEIGHT, elements, **ends), tmp_path)
+    run = run_of(heap_under(2.5 * HEIGHT, elements, **ends), tmp_path)
     for name in ("start", "end"):
         assert run[f"{name}_force"][-1][2] == pytest.approx(W * HEIGHT, rel=1e-3)
 
@@ -236,7 +230,7 @@ def test_a_rope_that_floats_lies_in_a_heap_over_its_anchor(
     rope: Mapping = {"EA": 6e7, "EI": 0.0, "GJ": 1.0, "outer_diameter": 0.25, "mass": 20.0}
     water = {"surface_level": HEIGHT, "depth": HEIGHT, "density": WATER}
     ends: Mapping = {"start": prescribed(0.0, 0.0, 0.0), "end": prescribed(span, 0.0, HEIGHT)}
-    run = done(heap_under(1.3 * HEIGHT, elements, **ends, pipe=rope, water=water, dimension=dimension), tmp_path)
+    run = run_of(heap_under(1.3 * HEIGHT, elements, **ends, pipe=rope, water=water, dimension=dimension), tmp_path)
     lift = GRAVITY * (WATER * np.pi / 4.0 * 0.25**2 - 20.0) * HEIGHT
     assert run["start_force"][-1][2] == pytest.approx(-lift, rel=1e-3)
     assert np.linalg.norm(run["end_force"][-1]) < PULLS * lift

@@ -14,14 +14,10 @@ from riser_soil.core.arrays import Array
 from riser_soil.riser.rotations import exp
 from riser_soil.riser.vectors import vector
 from tests.support.beam_chain import SpaceChain, alike, load, straight_space
+from tests.support.differences import orders
 from tests.support.rod_reference import Rod, first_buckling, tip
 
 FOURTH = 3.6  # least order that counts as fourth on coarse meshes
-
-
-def orders(errors: list[float]) -> Array:
-    """Observed orders between successive halvings of the element length."""
-    return np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
 
 
 # A helix from bending and twist

@@ -11,9 +11,8 @@ import pytest
 
 from riser_soil.core.snapshot import Record
 from riser_soil.errors import SceneError
-from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
-from riser_soil.whole_run import run
+from tests.support.runs import run_of
 from tests.support.said import line_with, lines_with
 from tests.support.scenes import Mapping, prescribed, riser_scene, static
 from tests.support.stage_histories import stage_histories
@@ -107,16 +106,11 @@ def test_components_make_up_the_moment_of_a_riser_in_current(tmp_path: Path) -> 
     scene["water"]["current"] = {"profile": [[-60.0, 0.4, 0.8], [0.0, 1.0, 1.8]]}
     del scene["riser"]["unstressed"]
     scene["riser"]["end"] = prescribed(25.0, 0.0, -20.0)
-    done = finished(scene, tmp_path)
+    done = run_of(scene, tmp_path)
     My, Mz, M = (done[f"bending_moment{name}"][-1] for name in ("_y", "_z", ""))
     assert min(np.abs(My).max(), np.abs(Mz).max()) > 0.1 * M.max()
     assert np.hypot(My, Mz) == pytest.approx(M, abs=1e-6 * M.max())
     assert done["wall_bending_stress"][-1] == pytest.approx(np.hypot(My, Mz) * 0.5 * OUTER / I, rel=1e-9)
-
-
-def finished(scene: Mapping, folder: Path) -> Run:
-    run(scene_from_mapping(scene), folder)
-    return Run(folder)
 
 
 def test_utilisations_and_their_warnings(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -127,7 +121,7 @@ def test_utilisations_and_their_warnings(tmp_path: Path, capsys: pytest.CaptureF
     scene["line_types"]["flexible"] = flexible
     half = {"length": 0.5 * L, "elements": 4}
     scene["riser"]["segments"] = [{"line_type": "pipe"} | half, {"line_type": "flexible"} | half]
-    done = finished(scene, tmp_path)
+    done = run_of(scene, tmp_path)
     (stage,) = done.summary["stages"]
     stress, used = done["wall_von_mises_stress"][-1], done["stress_utilisation"][-1]
     assert np.isnan(stress).tolist() == [False] * 5 + [True] * 4
@@ -154,7 +148,7 @@ def test_the_stress_that_is_warned_of_is_that_of_the_weaker_steel(tmp_path: Path
     scene["line_types"] = {"strong": STEEL | {"wall": strong}, "weak": STEEL | {"wall": weak}}
     half = {"length": 0.5 * L, "elements": 4}
     scene["riser"]["segments"] = [{"line_type": name} | half for name in ("strong", "weak")]
-    done = finished(scene, tmp_path)
+    done = run_of(scene, tmp_path)
     used, stress = done["stress_utilisation"][-1], done["wall_von_mises_stress"][-1]
     assert int(np.argmax(used)) == 4
     assert stress[4] > 1.1 * used[4] * 5.0e7
@@ -164,13 +158,13 @@ def test_the_stress_that_is_warned_of_is_that_of_the_weaker_steel(tmp_path: Path
 
 def test_without_a_wall_nothing_of_it_is_recorded(tmp_path: Path) -> None:
     plain = {key: value for key, value in STEEL.items() if key != "wall"}
-    done = finished(hanging(plain), tmp_path)
+    done = run_of(hanging(plain), tmp_path)
     with h5py.File(done.folder / "results.nc") as file:
         assert not {"wall_von_mises_stress", "bending_moment_y", "internal_pressure", "tension_utilisation"} & {*file}
 
 
 def test_in_a_plane_torque_is_not_recorded(tmp_path: Path) -> None:
-    done = finished(hanging(dimension=2), tmp_path)
+    done = run_of(hanging(dimension=2), tmp_path)
     with h5py.File(done.folder / "results.nc") as file:
         assert "bending_moment_y" in file
         assert not {"bending_moment_z", "torque", "stress_utilisation"} & {*file}

@@ -10,10 +10,9 @@ import pytest
 
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
-from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.scene.stages import QuasiStaticStage, StaticStage, pressure_in
-from riser_soil.whole_run import run
+from tests.support.runs import run_of
 from tests.support.said import telling
 from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
 from tests.support.stage_histories import StageHistory, stage_histories
@@ -149,13 +148,8 @@ def test_a_pressure_needs_contents() -> None:
         scene_from_mapping(hanging(0.0) | {"stages": [static(pressure=1.0e6)]})
 
 
-def finished(scene: Mapping, folder: Path) -> Run:
-    run(scene_from_mapping(scene), folder)
-    return Run(folder)
-
-
 def test_it_is_written_with_unit_and_extremes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    done = finished(hanging(-10.0, {"density": OIL}, water={"density": RHO, "surface_level": 0.0}), tmp_path / "out")
+    done = run_of(hanging(-10.0, {"density": OIL}, water={"density": RHO, "surface_level": 0.0}), tmp_path / "out")
     (stage,) = done.summary["stages"]
     wall = done["wall_tension"][-1]
     for name, node in (("max_wall_tension", wall.argmax()), ("min_wall_tension", wall.argmin())):
@@ -167,7 +161,7 @@ def test_it_is_written_with_unit_and_extremes(tmp_path: Path, capsys: pytest.Cap
 
 
 def test_where_the_pressure_outside_is_unknown_it_is_left_out(tmp_path: Path) -> None:
-    done = finished(hanging(-10.0, {"density": OIL}, water={"density": RHO}), tmp_path / "out")
+    done = run_of(hanging(-10.0, {"density": OIL}, water={"density": RHO}), tmp_path / "out")
     (stage,) = done.summary["stages"]
     assert "max_wall_tension" not in stage["final"]
     assert "surface_level" in done.summary["parts"]["left_out"]["wall tension"]
@@ -182,6 +176,6 @@ def test_results_have_the_pressure_of_each_step(tmp_path: Path) -> None:
     scene["line_types"]["pipe"]["wall"] = {}
     scene["stages"] = [static("hang"), static("test", pressure=5.0e6), dynamic(0.4, 0.1, "open", pressure=2.0e6)]
     scene |= {"output": {"interval": 0.1}, "solver": {"load_steps": 4}}
-    done = finished(scene, tmp_path / "out")
+    done = run_of(scene, tmp_path / "out")
     shown = 1e6 * np.array([1.0, 5.0, 2.0, 2.0, 2.0, 2.0])
     np.testing.assert_allclose(done["internal_pressure"][:, 0], shown, rtol=1e-9)

@@ -15,6 +15,7 @@ from riser_soil.riser.placed_line import LineTrials
 from riser_soil.riser.spatial_directors import SpatialOrientation
 from riser_soil.solve.time_scheme import Midpoint
 from tests.support.dense_chain import residual, tangent
+from tests.support.differences import error
 from tests.support.sample_line import Sample, sample
 
 DT, BEGUN = 0.4, 2.0
@@ -55,10 +56,6 @@ def differences(part: Stepping, start: State, u: Array, h: float = 2e-3) -> Arra
         steps = [(s * c, middle(start, u + s * k * h * way)) for k, c in STENCIL for s in (1, -1)]
         columns.append(sum(c * residual([part], state, WEIGHTS) for c, state in steps) / h)
     return np.stack(columns, axis=1)
-
-
-def error(K: Array, expected: Array) -> float:
-    return float(np.abs(K - expected).max() / np.abs(expected).max())
 
 
 @both_dimensions

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from riser_soil.checks.ground_plausibility import ground_warnings
-from riser_soil.core.part import Forces, State
+from riser_soil.core.part import State
 from riser_soil.core.system import System, Timer
 from riser_soil.soil.iwan import IwanOverlay
 from riser_soil.soil.kinematic_hardening import KinematicHardening
@@ -23,7 +23,7 @@ from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.driven_stage import built, soil_under, take
 from tests.support.scenes import LAY, Mapping, heave, touchdown
-from tests.support.soil_bench import assemble
+from tests.support.soil_bench import assemble, force
 from tests.support.soil_cases import distorted, moved, sheared, small_block
 
 SU, MU, SLOW = 4.0e3, 0.1, 1.0e-5
@@ -43,12 +43,6 @@ def block(law: Any = VISCOUS, moves: bool = False, unit_weight: float = 0.0) -> 
 def accept(soil: Soil, state: State) -> None:
     soil.commit(state)
     soil.field.commit(state)
-
-
-def force(soil: Soil, state: State) -> Any:
-    forces = Forces.zeros(soil.field.size)
-    soil.residual(state, forces)
-    return forces.end
 
 
 def shear_stress(soil: Soil) -> float:

@@ -7,9 +7,10 @@ import math
 import numpy as np
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Forces, State
+from riser_soil.core.part import State
 from riser_soil.soil.law import Formula, StressUpdate
 from riser_soil.soil.soil import Soil
+from tests.support.soil_bench import force
 from tests.support.soil_cases import CLAY, moved, small_block
 
 
@@ -34,12 +35,6 @@ def asked_soil(forgetful: bool = False) -> tuple[Soil, Asked]:
     soil = Soil(small_block("hex"), law, level=0.0, unit_weight=5.0e3)
     assert isinstance(soil.law, Asked)
     return soil, soil.law
-
-
-def force(soil: Soil, state: State) -> Array:
-    forces = Forces.zeros(soil.field.size)
-    soil.residual(state, forces)
-    return forces.end
 
 
 def again(state: State) -> State:

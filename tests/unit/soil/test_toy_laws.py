@@ -11,7 +11,7 @@ import pytest
 from riser_soil.assembly import Assembly
 from riser_soil.checks.check import describe
 from riser_soil.core.arrays import Array
-from riser_soil.core.part import Forces, State
+from riser_soil.core.part import State
 from riser_soil.core.system import Timer
 from riser_soil.errors import SceneError
 from riser_soil.scene.dump import dump_scene, schema_text
@@ -24,7 +24,7 @@ from riser_soil.stages import run_stage
 from tests.support.driven_stage import Watcher, built, soil_under
 from tests.support.said import telling
 from tests.support.scenes import LAY, Mapping, prescribed, riser_scene, static, touchdown
-from tests.support.soil_bench import assemble
+from tests.support.soil_bench import assemble, force
 from tests.support.soil_cases import KINDS, distorted, moved, sheared, small_block
 from tests.support.soil_loops import after, at, forces, through, work
 from tests.support.toy_laws import Hardening, OtherElastic, PlasticSpring, entered
@@ -153,12 +153,6 @@ def test_tangent_of_hardening_soil(kind: str) -> None:
     ahead, behind = (force(soil, State(1.0, state.u + s * direction, state.v, state.a)) for s in (1e-7, -1e-7))
     numeric = (ahead - behind) / 2e-7
     assert np.linalg.norm(assemble(soil, state) @ direction - numeric) < 1e-7 * np.linalg.norm(numeric)
-
-
-def force(soil: Soil, state: State) -> Array:
-    forces = Forces.zeros(soil.field.size)
-    soil.residual(state, forces)
-    return forces.end
 
 
 TOY_BED: Mapping = {"kind": "toy", "k": 1.0e5, "limit": 400.0, "h": 2.0e4}
