@@ -185,9 +185,9 @@ def _side(point: JointPoint, lines: Mapping[str, LineAssembly], bodies: Mapping[
 def _rigid(sides: list[tuple[Side, JointPoint]], lines: Mapping[str, LineAssembly]) -> tuple[float, float]:
     """Stiffness [N/m] and [N.m/rad] of a rigid joint, by the elements beside it; between bodies by all of them."""
     beside = [(lines[str(point.line)], side.node) for side, point in sides if point.line is not None]
-    found = [_beside(own, slice(max(node - 1, 0), node + 1)) for own, node in beside]
-    found = found or [_beside(own, slice(None)) for own in lines.values()]
-    return STIFF * max(EA for EA, _ in found), STIFF * max(EI for _, EI in found)
+    stiffest = [_beside(own, slice(max(node - 1, 0), node + 1)) for own, node in beside]
+    stiffest = stiffest or [_beside(own, slice(None)) for own in lines.values()]
+    return STIFF * max(EA for EA, _ in stiffest), STIFF * max(EI for _, EI in stiffest)
 
 
 def _beside(own: LineAssembly, at: slice) -> tuple[float, float]:

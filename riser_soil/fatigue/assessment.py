@@ -133,11 +133,11 @@ def assess(file: Path, given: Fatigue) -> YearlyDamage:
         histories.append(history)
     assert first is not None  # a fatigue file has a case at least
     section, point = _largest(np.sum(rates, axis=0))
-    found = [
+    cases = [
         _case(run, case, history, how, rate, int(chosen[section]), point)
         for run, case, history, rate in zip(runs, given.cases, histories, rates, strict=True)
     ]
-    return YearlyDamage(given, how, first.arc[chosen], Wall(*(d[chosen] for d in first.sections.wall)), found)
+    return YearlyDamage(given, how, first.arc[chosen], Wall(*(d[chosen] for d in first.sections.wall)), cases)
 
 
 def _largest(damage: Array) -> tuple[int, int]:

@@ -141,13 +141,13 @@ def _points(scene: Scene, arcs: list[float], level: float) -> Iterator[list[obje
     if first is None and last is None:
         raise SceneError("riser: both ends are free; a deck needs one that is held")
     for n, arc in enumerate(arcs):
-        held = (first if n == 0 else None) or (last if n == len(arcs) - 1 else None)
-        x, y, z = held or _between(first, last, arc, arcs[-1])
+        fixed = (first if n == 0 else None) or (last if n == len(arcs) - 1 else None)
+        x, y, z = fixed or _between(first, last, arc, arcs[-1])
         attached = _attached(scene, arc)
-        if held and attached:
+        if fixed and attached:
             raise SceneError("riser.attachments: one is at an end that is held, where it has no effect; leave it out")
         what = _sum(attached)
-        yield ["Fixed" if held else "Free", x, y, z - level, *what]
+        yield ["Fixed" if fixed else "Free", x, y, z - level, *what]
 
 
 def _between(first: Vector | None, last: Vector | None, arc: float, length: float) -> Vector:

@@ -163,11 +163,11 @@ def _place(stage: StageRecords, name: str, which: str, values: Array) -> str:
 def _of_summary(stage: StageRecords, figure: str, which: str) -> tuple[float, float] | None:
     """An extreme of the summary with its arc length [m]; None where it has none."""
     if stage.timed:
-        found = (stage.summary["extremes"] or {}).get(figure)
-        value, arc = (found.get(which), found.get(f"arc_{which}")) if isinstance(found, dict) else (None, None)
+        entry = (stage.summary["extremes"] or {}).get(figure)
+        value, arc = (entry.get(which), entry.get(f"arc_{which}")) if isinstance(entry, dict) else (None, None)
     else:
-        found = (stage.summary["final"] or {}).get(figure)
-        value, arc = (found.get("value"), found.get("arc")) if isinstance(found, dict) else (None, None)
+        entry = (stage.summary["final"] or {}).get(figure)
+        value, arc = (entry.get("value"), entry.get("arc")) if isinstance(entry, dict) else (None, None)
     return None if value is None or arc is None else (value, arc)
 
 

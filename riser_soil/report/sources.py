@@ -212,9 +212,9 @@ def _with_differences(cases: Sequence[LoadCase]) -> Iterator[LoadCase]:
 
 def _counts(path: str) -> bool:
     """Whether a value of the scene is one that was chosen: no title, output, or what was found on the way."""
-    found = ("title", "output", "error_bars", "accuracy", "riser.end.position", "riser.start.position")
+    computed = ("title", "output", "error_bars", "accuracy", "riser.end.position", "riser.start.position")
     files = (".rao", ".file", ".directory", ".reference")
-    return not path.startswith(found) and not path.endswith(files)
+    return not path.startswith(computed) and not path.endswith(files)
 
 
 def flattened(value: Any, path: str) -> Iterator[tuple[str, Any]]:

@@ -137,12 +137,12 @@ def outer_facets(grid: DistributedMesh, nodes: IntArray, boundary: str = "") -> 
     """Cells and their local facets (nf, 2) on the "sides" or the "bottom" of the soil, or on both."""
     family = grid.family
     on_plane = planes_of(grid, boundary)[nodes[:, : family.vertices]]  # (nc, nv, planes)
-    found = [
+    facets_of_cells = [
         np.stack([cells, np.full(len(cells), number)], axis=1)
         for number, facet in enumerate(facets_of(family))
         for cells in [np.flatnonzero(on_plane[:, facet].all(axis=1).any(axis=1))]
     ]
-    return np.concatenate(found).astype(np.int64)
+    return np.concatenate(facets_of_cells).astype(np.int64)
 
 
 def facets_of(family: Family) -> list[list[int]]:

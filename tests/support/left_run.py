@@ -19,13 +19,13 @@ def leave_after(
     steps: int, scene: Scene, folder: Path, peaks: RunPeaks | None = None, restart: bool = False
 ) -> Interruption:
     """Run the scene; SIGTERM comes while so many steps have been recorded."""
-    usual, taken = Observer.record, 0
+    usual, count = Observer.record, 0
 
     def record(self: Observer, *arguments: Any, **more: Any) -> None:
-        nonlocal taken
+        nonlocal count
         usual(self, *arguments, **more)
-        taken += 1
-        if taken == steps:
+        count += 1
+        if count == steps:
             signal.raise_signal(signal.SIGTERM)
 
     with pytest.MonkeyPatch.context() as patch:

@@ -17,9 +17,9 @@ def traction(
     r = elastic.shape[-1]
     both, answers = (float(mu[0]), float(mu[-1])), list[tuple[Array, Array, Array]]()
     pushed = np.stack(np.broadcast_arrays(N, slope, most, most_slope), axis=-1).reshape(-1, 4)
-    for guess, (force, rise, held, widening) in zip(elastic.reshape(-1, r), as_list(pushed), strict=True):
+    for guess, (force, rise, adhesion, widening) in zip(elastic.reshape(-1, r), as_list(pushed), strict=True):
         at = float(guess[0]), float(guess[-1]) if r > 1 else 0.0
-        t, by_elastic, by_penetration = return_map(at, *limits(force, rise, both, (held, widening)))
+        t, by_elastic, by_penetration = return_map(at, *limits(force, rise, both, (adhesion, widening)))
         answers.append((np.array(t)[:r], np.array(by_elastic)[:r, :r], np.array(by_penetration)[:r]))
     t, by_elastic, by_penetration = (np.array(each) for each in zip(*answers, strict=True))
     return t.reshape(elastic.shape), by_elastic.reshape(*elastic.shape, r), by_penetration.reshape(elastic.shape)

@@ -78,8 +78,8 @@ def waving(folder: Path, **more: Any) -> Run:
 def test_ledger_of_each_step_adds_up(tmp_path: Path) -> None:
     """In waves and current, with structural damping, a load and a moving end: nothing is left out of the sums."""
     run = waving(tmp_path / "out")
-    reported = ("structural_damping",), ("loads", "morison", "buoyancy", "supports")
-    for total, names in zip(("dissipated", "work"), reported, strict=True):
+    ledger_names = ("structural_damping",), ("loads", "morison", "buoyancy", "supports")
+    for total, names in zip(("dissipated", "work"), ledger_names, strict=True):
         parts = [run[f"{total}_{name}"][1:] for name in names]
         assert all(np.abs(part).max() > 0.1 for part in parts)
         np.testing.assert_allclose(sum(parts), run[total][1:], rtol=1e-12)

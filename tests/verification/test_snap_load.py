@@ -60,8 +60,8 @@ def peaks(elements: int, time_step: float) -> tuple[float, float, float]:
     tension, energy = list[tuple[float, float]](), list[float]()
 
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
-        found = riser_record(assembly.riser, stepper).effective_tension
-        tension.append((float(found[-1]), float(found.max())))
+        tensions = riser_record(assembly.riser, stepper).effective_tension
+        tension.append((float(tensions[-1]), float(tensions.max())))
         energy.append(stepper.energy.total)
 
     watcher = Watcher(watch)

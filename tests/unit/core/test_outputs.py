@@ -118,7 +118,7 @@ def test_pages_give_the_table_s_symbols_and_units() -> None:
     """Symbols and units of the results in the table of docs/conventions.md; one unit there may serve several words."""
     table = text(ROOT / "docs/conventions.md").split("| word | symbol | unit | meaning |")[1].split("\n\n")[0]
     known = {output.name: output for output in TABLE}
-    seen = set()
+    listed = set()
     for row in table.splitlines()[2:]:
         words, symbols, units = ([*re.split(", ?", cell.strip())] for cell in row.split("|")[1:4])
         names = [word.strip("`") for word in words]
@@ -127,8 +127,8 @@ def test_pages_give_the_table_s_symbols_and_units() -> None:
                 output = known[name]
                 assert _page_s(output.units) == units[min(place, len(units) - 1)], name
                 assert output.symbol == (symbols[place] if len(symbols) == len(names) else ""), name
-                seen.add(name)
-    assert seen >= set(outputs.choices()) - {"wall_tension", "moment_vector", "displacement"}
+                listed.add(name)
+    assert listed >= set(outputs.choices()) - {"wall_tension", "moment_vector", "displacement"}
 
 
 def _page_s(units: str) -> str:

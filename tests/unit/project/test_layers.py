@@ -111,8 +111,8 @@ def imports() -> dict[str, set[str]]:
     known, graph = modules(), {}
     for module, path in known.items():
         names = imported_names(path.read_text(), package_of(module, path))
-        found = {name if name in known else name.rpartition(".")[0] for name in names}
-        graph[module] = (found & known.keys()) - {module}
+        candidates = {name if name in known else name.rpartition(".")[0] for name in names}
+        graph[module] = (candidates & known.keys()) - {module}
     return graph
 
 

@@ -118,8 +118,8 @@ def test_meshio_finds_what_vtk_finds(tmp_path: Path, layers: tuple[int, int, int
             points, (block_of_cells,) = reader.read_points_cells()
             assert reader.num_steps == len(times) == 5
             for number, (time, frame) in enumerate(zip(times, frames, strict=True)):
-                found, on_points, on_cells = reader.read_data(number)
-                assert found == time
+                time_read, on_points, on_cells = reader.read_data(number)
+                assert time_read == time
                 values = {f"point:{key}": of for key, of in on_points.items()}
                 values |= {f"cell:{key}": of for key, (of,) in on_cells.items()}
                 assert values.keys() == {key for key in frame if ":" in key}

@@ -313,8 +313,8 @@ def test_what_a_law_does_wrong_is_told_in_one_line(own: Write, name: str) -> Non
 
 def test_a_wrong_tangent_is_told_with_depth_and_strain_increment(own: Write) -> None:
     """A clay whose tangent is elastic where it flows."""
-    found = "found = self.formula.update(increment, history, dt)"
-    text = CLAY.replace("return self", f"{found}\n        return found._replace(tangent=self.formula._elastic) #")
+    call = "found = self.formula.update(increment, history, dt)"
+    text = CLAY.replace("return self", f"{call}\n        return found._replace(tangent=self.formula._elastic) #")
     law = own(text, su=1e3, su_gradient=0.0, E_over_su=300.0)
     with pytest.raises(SceneError, match=telling("at a depth of", "gamma_xz 0.0127", "tangent")):
         law.at_points(*points())

@@ -20,11 +20,11 @@ from tests.support.scenes import LAY, Mapping, heave, touchdown
 @pytest.fixture
 def failing_after(monkeypatch: pytest.MonkeyPatch) -> list[BaseException]:
     """The run ends at its 8th step in motion, by what the test puts into the list."""
-    usual, taken, ends = TimeStepper.advance, [0], list[BaseException]()
+    usual, count, ends = TimeStepper.advance, [0], list[BaseException]()
 
     def advance(stepper: TimeStepper, control: Control, most_cuts: int | None = None) -> AcceptedStep:
-        taken[0] += not isinstance(stepper.scheme, Static)
-        if taken[0] == 8:
+        count[0] += not isinstance(stepper.scheme, Static)
+        if count[0] == 8:
             raise ends[0]
         return usual(stepper, control, most_cuts)
 

@@ -84,9 +84,9 @@ def test_bands_with_moved_dofs_and_soil_are_solved_as_the_whole_matrix() -> None
         assert banded.factorise(line.workspace.ab, line.workspace.pivots, line.workspace.band)
     in_turn(*border.factorise(Packed(failure)), *border.couple())()
     assert failure[0] == NONE
-    found = -np.concatenate([np.zeros(starts[-1]), border.of[lines[0]].value.u])
+    solution = -np.concatenate([np.zeros(starts[-1]), border.of[lines[0]].value.u])
     for line, (a, b) in ranges:
-        found[a:b] = line.dofs.residual.ravel()
-        banded.solve(line.workspace.ab, line.workspace.pivots, found[a:b], line.workspace.band)
+        solution[a:b] = line.dofs.residual.ravel()
+        banded.solve(line.workspace.ab, line.workspace.pivots, solution[a:b], line.workspace.band)
     expected = np.linalg.solve(A, load)
-    assert np.abs(found - expected).max() < 1e-9 * np.abs(expected).max()
+    assert np.abs(solution - expected).max() < 1e-9 * np.abs(expected).max()

@@ -176,7 +176,7 @@ def test_contact_alone_is_found_anew_beside_a_kept_tangent() -> None:
         u[:, 1] += change
     compiled.riser.evaluate()
     compiled.riser.renew_contact()
-    found, own, stale, rest = (
+    computed, own, stale, rest = (
         matrix[places][:, places]
         for matrix in (
             assembled(compiled.line.workspace.K),
@@ -185,8 +185,8 @@ def test_contact_alone_is_found_anew_beside_a_kept_tangent() -> None:
             tangent(others, first, WEIGHTS),
         )
     )
-    assert error(found, rest + own) < 1e-12
-    assert error(found, rest + stale) > 1e-4
+    assert error(computed, rest + own) < 1e-12
+    assert error(computed, rest + stale) > 1e-4
 
 
 def assembled(K: Array) -> Array:
