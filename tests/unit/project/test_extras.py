@@ -1,4 +1,4 @@
-"""Packages that a riser alone does without: what is not there is told in a line that says what brings it."""
+"""Packages that a riser alone does without: each is required, or has an extra that brings it."""
 
 from __future__ import annotations
 
