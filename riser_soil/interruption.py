@@ -142,7 +142,7 @@ def restoring_signal_handlers() -> Iterator[None]:
 
 
 def default_signal_handlers() -> None:
-    """From now on signals end this process at once and without a message."""
+    """Let signals end this process at once and without a message."""
     for number in OURS:
         signal.signal(number, signal.SIG_DFL)
 
@@ -176,7 +176,7 @@ def agreeing(comm: Any) -> Iterator[None]:
 
 
 def leave_between_steps() -> None:
-    """From now on, in an `agreeing` block, a process alone leaves at `check`, too."""
+    """Let a process alone leave an `agreeing` block at `check`, too."""
     _pending.agreeing = True
 
 

@@ -129,7 +129,7 @@ def _contact(scene: Scene, seabed: Seabed, settings: Contact, body: _Body, shape
 
 
 def _friction(seabed: Seabed, settings: Contact, body: _Body, contact: BodyContact) -> BodyFriction | None:
-    """By its own coefficient, else by that across a pipe; None without any."""
+    """Friction of a body by its own coefficient, else by that across a pipe; None without any."""
     asked, own = settings.friction, body.given.friction
     if own is not None:
         given = {"axial": own, "lateral": own}

@@ -50,7 +50,7 @@ def _table(given: Table | VesselHistory, stage: TimedStage) -> SixDegreeMotion:
 
 
 def _sail(end: End, origin: Array, given: VesselHistory, stage: TimedStage) -> None:
-    """With a vessel at which the end is at origin (3,) as the stage begins."""
+    """Move an end with a vessel, the end being at origin (3,) as the stage begins."""
     once = lru_cache(maxsize=2)(_table(given, stage))  # a step asks again and again for its beginning and its end
     body = RigidBody(once, np.array([given.axes(mode) for mode in TRANSLATIONS]).T)
     end.motion, end.turning = CarriedPoint(body, origin, np.array(given.reference)), CarriedFrame(body)

@@ -57,7 +57,7 @@ class HungEnd:
 
     @property
     def span(self) -> Array:
-        """From the other end to this one (3,) [m]."""
+        """Vector from the other end to this one (3,) [m]."""
         here, there = (_position(self.riser, name) for name in (self.name, self.other))
         return here - there
 
@@ -143,7 +143,9 @@ def _with_value(before: Scene, hung: HungEnd, value: float) -> Scene:
 
 
 def _as_high_over_the_ground(scene: Scene, before: Scene, line: str, name: str) -> Scene:
-    """With the lower end as high over the ground as before: it moved, or the ground below it with the riser's start."""
+    """The line with its lower end as high over the ground as before: it moved, or the ground below it with the riser's
+    start.
+    """
     now, was = by_line(scene)[line], by_line(before)[line]
     x, y, z = getattr(now.riser, name).position
     rise = ground_height(now, (x, y, z)) - ground_height(was, getattr(was.riser, name).position)

@@ -145,14 +145,14 @@ class LevelBed:
 
 
 def _missed(bent: ShapeInPlane, placed: ShapeInPlane) -> Array:
-    """By how much the ends (2, 2) are off their places [m]; in height only those that hang."""
+    """Distances by which the ends (2, 2) are off their places [m]; in height only those that hang."""
     missed: Array = (placed.place - bent.place)[[0, -1]]
     missed[:, 1] *= placed.hangs[[0, -1]]
     return missed
 
 
 def _closed(bent: ShapeInPlane, placed: ShapeInPlane, length: Array) -> ShapeInPlane:
-    """With its ends at their places: what is left is spread over what hangs."""
+    """The shape with its ends at their places: what is left is spread over what hangs."""
     share = np.append(0.0, np.cumsum(length * (placed.hangs[1:] | placed.hangs[:-1])))[:, None]
     first, last = _missed(bent, placed)
     return ShapeInPlane(bent.place + first + share / share[-1] * (last - first), bent.angle, bent.hangs)

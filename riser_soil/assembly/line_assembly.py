@@ -250,7 +250,7 @@ class LineAssembly:
         return max((float(np.linalg.norm(after - before)) for before, after in self._moves(t0, t1)), default=0.0)
 
     def pressed(self, t0: float, t1: float) -> float:
-        """By how much the embedment of an end's underside changes between t0 and t1 of the present stage [m], in the
+        """Change of the embedment of an end's underside between t0 and t1 of the present stage [m], in the
         level soil before it.
         """
         axis = self.scene.seabed_level + 0.5 * self.scales.diameter

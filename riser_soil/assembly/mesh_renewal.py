@@ -19,6 +19,6 @@ def mesh_renewal_of(soil: Soil, contact: SurfaceContact, friction: SoilFriction 
 
 
 def _mesh_made_anew(soil: Soil, along: int) -> Sections | HarmonicMesh:
-    """Its sections where its nodes form a grid, the riser along x (0) or y (1)."""
+    """A soil's sections where its nodes form a grid, the riser along x (0) or y (1)."""
     sections = sections_of(soil.mesh.points, along)
     return HarmonicMesh.of(soil.grid, soil.mesh, soil.surface) if sections is None else sections

@@ -40,7 +40,8 @@ def elements_of(scene: Scene) -> sections.Elements:
 
 
 def _grown(scene: Scene, bare: sections.Elements, given: Array, around: sections.Surroundings) -> sections.Elements:
-    """With the marine growth, rows of z, thickness and density, of the heights at which the first shape hangs with it.
+    """Elements with the marine growth, rows of z, thickness and density, of the heights at which the first shape hangs
+    with it.
 
     SceneError where shape and growth do not settle.
     """
@@ -69,7 +70,7 @@ def elements_along(
 
 
 def _stiffened(riser: Riser, elements: sections.Elements, around: sections.Surroundings) -> sections.Elements:
-    """With the bend stiffeners of the ends that have one."""
+    """Elements with the bend stiffeners of the ends that have one."""
     for end, is_last in ((riser.start, False), (riser.end, True)):
         if isinstance(end, Support) and end.bend_stiffener is not None:
             from riser_soil.riser.additions import Taper, with_taper

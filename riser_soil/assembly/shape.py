@@ -45,7 +45,7 @@ def unstressed_shape(riser: Riser, arc: Array) -> shapes.Curve:
 
 
 def _straight(riser: Riser, arc: Array) -> shapes.Curve:
-    """From start to end; along x where an end is free."""
+    """Straight line from start to end; along x where an end is free."""
     start, end = _ends(riser)
     if start is None or end is None or np.array_equal(start, end):
         return shapes.straight(arc, np.zeros(3) if start is None else start)

@@ -83,7 +83,7 @@ class SoilSizes:
 
     @property
     def half_width(self) -> float:
-        """From the pipe to the block's sides and to its bottom [m]."""
+        """Distance from the pipe to the block's sides and to its bottom [m]."""
         return max(DIAMETERS * self.scales.diameter, WIDTHS * self.width)
 
     @property
@@ -177,6 +177,6 @@ def _check_strength(law: SoilLaw, block: Block) -> None:
 
 
 def _rounded(values: Array) -> Array:
-    """To three figures of the largest, of several rows in that in which it is smallest: all alike."""
+    """Sizes rounded to three figures of the largest, of several rows in that in which it is smallest: all alike."""
     unit = 10.0 ** (np.floor(np.log10(np.abs(values).max(axis=-1).min() or 1.0)) - 2.0)
     return np.asarray(np.round(values / unit) * unit)

@@ -41,7 +41,7 @@ class Point:
 
     @property
     def group(self) -> str:
-        """Its part of the name of a group of cases that differ in seeds alone."""
+        """A value's part of the name of a group of cases that differ in seeds alone."""
         if self.in_common is not None:
             return self.in_common
         return "" if any(map(is_seed, self.values)) else self.name

@@ -202,7 +202,7 @@ def _hangs(scene: Scene, elements: Elements, shape: Catenary) -> BoolArray:
 
 
 def _tension(shape: Catenary) -> Array:
-    """In the middle of the elements (ne,) [N]."""
+    """Tension in the middle of the elements (ne,) [N]."""
     return 0.5 * (shape.tension[1:] + shape.tension[:-1])
 
 

@@ -36,8 +36,8 @@ def by_hand(riser: LineAssembly) -> Iterator[str]:
 
 
 def _of_cable(riser: LineAssembly, cable: Catenary) -> Iterator[str]:
-    """Beside the cable's tensions H + sum of w dz, from the lowest point up: dT = w dz along a cable, whatever its
-    shape. An attachment's weight P adds some P sin(slope).
+    """Lines with the cable's tensions beside H + sum of w dz, from the lowest point up: dT = w dz along a cable,
+    whatever its shape. An attachment's weight P adds some P sin(slope).
     """
     z = cable.curve.position[:, 2]
     low, near = int(z.argmin()), TOUCHING * float(riser.line.arc[-1])

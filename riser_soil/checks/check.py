@@ -157,7 +157,7 @@ def _unknowns(riser: LineAssembly, name: str, comm: Communicator) -> Iterator[st
 
 
 def _computed(scene: Scene) -> Iterator[str]:
-    """At large strain or small, and why; and why all of the soil is computed, where it is."""
+    """Words on large or small strain, and why; and why all of the soil is computed, where it is."""
     assert scene.soil is not None
     asked = "as soil.strain asks" if scene.soil.strain == "large" else "as it yields under contact with its surface"
     yield f"soil: at large strain, {asked}" if scene.soil_moves else f"soil: at small strain: {scene.why_small_strain}"

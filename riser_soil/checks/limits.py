@@ -85,7 +85,7 @@ def in_bytes(number: float) -> str:
 
 
 def _nodes(comm: Any) -> float:
-    """On how many machines the ranks run, each with memory of its own."""
+    """Number of machines on which the ranks run, each with memory of its own."""
     if comm.size == 1:
         return 1.0
     from mpi4py import MPI
@@ -144,7 +144,7 @@ def _of_the_machine() -> Iterator[float]:
 
 
 def _of_the_group() -> Iterator[float]:
-    """In a container; the file cache counts as available."""
+    """Memory of the process's control group, in a container; the file cache counts as available."""
     for folder, limit, used in _GROUPS:
         for most, now in zip(_number(folder / limit), _number(folder / used), strict=False):
             yield most - now + sum(_fields(folder / "memory.stat", "inactive_file"))

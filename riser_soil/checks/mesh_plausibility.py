@@ -50,7 +50,7 @@ def missed(on_mesh: Settled, fine: Settled) -> float:
 
 
 def excess_of_sections(bending: float, width: float, depth: float) -> float:
-    """By what part of it a pipe that bends within a length settles more on sections than on a block [m].
+    """Part by which a pipe that bends within a length settles more on sections than on a block [m].
 
     A strip load that varies as cos(x/bending) settles q/(pi E*) (2 ln(4 bending/width) + 2 - 2·0.5772) on a half space,
     by stress along it too, and on sections as a uniform one, see `settlement` (M. A. Biot, Bending of an infinite

@@ -50,7 +50,7 @@ class Settled(NamedTuple):
 
 
 def predicted_settlement(riser: LineAssembly, across: float = 0.0) -> Settled | None:
-    """On cells of a size across the riser [m]; None without soil, and of a riser that has no weight."""
+    """Settlement on cells of a size across the riser [m]; None without soil, and of a riser that has no weight."""
     soil, scales = riser.scene.soil, riser.scales
     if soil is None or riser.soil is None or scales.weight <= 0.0:
         return None

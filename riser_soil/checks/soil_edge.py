@@ -61,7 +61,7 @@ def edge_warnings(riser: LineAssembly) -> Iterator[str]:
 
 
 def soil_edge(riser: LineAssembly) -> SoilEdge | None:
-    """None without a seabed beside the soil, or of a riser that has no weight."""
+    """The edge of the soil; None without a seabed beside the soil, or of a riser that has no weight."""
     soil, scales, seabed = riser.scene.soil, riser.scales, riser.seabed
     heavy = float(riser.elements.weight.max()) > 0.0
     if soil is None or riser.soil is None or seabed is None or not heavy:

@@ -40,7 +40,7 @@ def _closed(curve: Array) -> Array:
 
 
 def _angle(points: Array, size: Array) -> Array:
-    """From the axis of tension towards that of curvature [rad], from 0 to pi."""
+    """Angle from the axis of tension towards that of curvature [rad], from 0 to pi."""
     return np.asarray(np.arctan2(points[..., 1] / size[1], points[..., 0] / size[0]))
 
 

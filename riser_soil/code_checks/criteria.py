@@ -70,7 +70,7 @@ class Criteria(Protocol):
     def criteria(self) -> tuple[Criterion, ...]: ...
 
     def utilisations(self, loads: NodeLoads) -> Mapping[str, Array]:
-        """By the fields of the criteria, (..., n)."""
+        """Utilisations by the fields of the criteria, (..., n)."""
         ...
 
 

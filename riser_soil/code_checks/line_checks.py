@@ -84,7 +84,7 @@ class LineChecks:
         return {n: check.functional_run for n, check in checks.items() if check.functional_run is not None}
 
     def begin_from(self, number: int, functional: SectionEffects) -> None:
-        """With a check's functional load effects (nn,) from another run."""
+        """Begin with a check's functional load effects (nn,) from another run."""
         self._references[number].begin_from(functional)
 
     def begin_stage(self, name: str) -> None:
@@ -156,7 +156,7 @@ def _reference_stages(scene: Scene, number: int) -> tuple[str | None, str | None
 
 
 def _of_part(effects: LoadEffects, part: CheckedPart) -> LoadEffects:
-    """At its nodes, moments as the pipe bears them."""
+    """Effects at a part's nodes, with moments as the pipe bears them."""
     borne_y, borne_z = part.borne.T
     return LoadEffects(
         *(

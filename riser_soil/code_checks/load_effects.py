@@ -39,7 +39,7 @@ class LoadEffects(NamedTuple):
 
     @property
     def all(self) -> SectionEffects:
-        """Their sum without factors."""
+        """Sum of the effects without factors."""
         return SectionEffects(*(F + E + A for F, E, A in zip(*self, strict=True)))
 
 

@@ -28,7 +28,7 @@ class Reference:
         self._found: dict[str, Array] = {}  # (3, nn) functional, accidental
 
     def begin_from(self, functional: SectionEffects) -> None:
-        """With functional effects (nn,) from elsewhere: no stage of this run brings them about."""
+        """Begin with functional effects (nn,) from elsewhere: no stage of this run brings them about."""
         self._found["functional"], self._given = np.stack(functional), True
 
     def begin_stage(self, name: str) -> None:

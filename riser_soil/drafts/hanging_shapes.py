@@ -37,7 +37,7 @@ class HangingLine(NamedTuple):
     EA: float
 
     def arc(self, H: float, *slopes: float) -> Stretch:
-        """From the seabed's or an extreme's level to each of the slopes."""
+        """Arc lengths from the seabed's or an extreme's level to each of the slopes."""
         a = H / abs(self.weight)
         return Stretch(self.name, a * sum(t - 0.5 * H / self.EA * _of_tension(t) for t in slopes))
 

@@ -48,12 +48,12 @@ class CrossSection:
 
     @property
     def weight(self) -> float:
-        """In water, with its contents [N/m]."""
+        """Weight in water, with the contents [N/m]."""
         return GRAVITY * (self.mass + 0.25 * math.pi * (self.contents * self.inner**2 - WATER * self.outer**2))
 
 
 def rounded(value: float) -> float:
-    """To six figures."""
+    """The number with six figures."""
     return float(f"{value:.6g}")
 
 

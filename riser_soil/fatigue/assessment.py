@@ -82,7 +82,7 @@ class YearlyDamage:
         return np.array([each.scatter * each.per_year[self.worst] for each in self.cases])
 
     def warnings(self) -> Iterator[str]:
-        """With numbers and a remedy."""
+        """Warnings with numbers and a remedy."""
         total = self.given.total_share
         if total < 1.0 - 1e-9:
             yield f"the cases cover {100.0 * total:.4g} % of the year; the rest counts as calm"

@@ -34,7 +34,7 @@ class StressRanges:
         return 2.0 * np.pi / self.points * np.arange(self.points)
 
     def factor(self, wall_thickness: float) -> float:
-        """On stress ranges in a wall of this thickness [m]."""
+        """Factor on stress ranges in a wall of this thickness [m]."""
         thickness = wall_thickness if self.thickness is None else self.thickness
         return self.stress_concentration * self.curve.thickness_factor(thickness)
 

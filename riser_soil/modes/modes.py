@@ -57,7 +57,7 @@ class LineShapes(NamedTuple):
     twist: Array
 
     def scaled(self, factors: Array) -> LineShapes:
-        """By each mode's factor (n,)."""
+        """The shapes scaled by each mode's factor (n,)."""
         return self._replace(shape=factors[:, None, None] * self.shape, twist=factors[:, None] * self.twist)
 
 
@@ -70,7 +70,7 @@ class BodyShapes(NamedTuple):
     rotation: Array
 
     def scaled(self, factors: Array) -> BodyShapes:
-        """By each mode's factor (n,)."""
+        """The shapes scaled by each mode's factor (n,)."""
         return BodyShapes(factors[:, None] * self.shape, factors[:, None] * self.rotation)
 
 

@@ -29,7 +29,7 @@ class Chain:
 
     @property
     def name(self) -> str:
-        """Such as line1, line1_2 of two lines, or rod3 of a rod alone."""
+        """Name of the chain, such as line1, line1_2 of two lines, or rod3 of a rod alone."""
         rows = self.lines or [piece.row for piece in self.pieces]
         return ("line" if self.lines else "rod") + "_".join(row["ID"] for row in rows)
 

@@ -151,7 +151,7 @@ def _points(scene: Scene, arcs: list[float], level: float) -> Iterator[list[obje
 
 
 def _between(first: Vector | None, last: Vector | None, arc: float, length: float) -> Vector:
-    """On the line between the ends, or below the one that is held."""
+    """Position on the line between the ends, or below the one that is held."""
     if first is not None and last is not None:
         x, y, z = (a + (b - a) * arc / length for a, b in zip(first, last, strict=True))
         return x, y, z

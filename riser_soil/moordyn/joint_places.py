@@ -48,7 +48,7 @@ class Cable:
 
     @cached_property
     def turned(self) -> Cable:
-        """One that floats, upside down."""
+        """The cable upside down, as one that floats is."""
         return Cable(self.arc, -self.weight, self.EA, self.points * [1.0, -1.0], self.ends, -np.inf)
 
     @property

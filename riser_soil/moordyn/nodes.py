@@ -48,7 +48,7 @@ class Piece:
 
     @property
     def name(self) -> str:
-        """Such as line 3 or rod 1."""
+        """Name of the piece, such as line 3 or rod 1."""
         return f"{self.section[:-1]} {self.row['ID']}"
 
     def beyond(self, node: Node) -> Node:

@@ -63,7 +63,7 @@ def riser_of(
 
 
 def _add_segment(deck: Deck, chain: Chain, n: int, riser: ImportedRiser) -> float:
-    """Its length [m]."""
+    """Add a segment; its length [m]."""
     piece, segments = chain.pieces[n], riser.data["segments"]
     riser.origins[("segments", len(segments))] = piece.row.line
     length, elements = length_of(deck, piece), int(deck.number(piece.row, "NumSegs"))

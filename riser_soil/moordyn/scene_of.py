@@ -49,7 +49,9 @@ def head_of(deck: Deck, options: Options, types: dict[str, Any]) -> dict[str, An
 
 
 def _upward(deck: Deck, chain: Chain, options: Options) -> Chain:
-    """From the lower end on: the one that hangs, or that what floats is held by; SceneError where nothing holds it."""
+    """The chain from its lower end on: the one that hangs, or that what floats is held by; SceneError where nothing
+    holds it.
+    """
     first, last = (is_free(deck, node) for node in chain.ends)
     if first and last:
         names = " and ".join(node.name for node in chain.ends)

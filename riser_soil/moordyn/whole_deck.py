@@ -88,7 +88,7 @@ def _ends_by_node(chains: list[Chain]) -> Ends:
 
 
 def _upward(deck: Deck, chain: Chain, options: Options) -> Chain:
-    """From its lower end on."""
+    """The chain from its lower end on."""
     depth = options["WtrDpth"]
     first, last = (place(deck, node, -depth if depth > 0.0 else None)[2] for node in chain.ends)
     return chain.reversed() if first > last else chain
@@ -235,7 +235,7 @@ def _rigid(deck: Deck, row: DeckRow, rho: float) -> tuple[dict[str, Any], list[s
 
 
 def _three(values: list[float]) -> list[float]:
-    """By axis: one for all, one for all and one for rotations, three, or three and three for rotations."""
+    """Three values by axis: one for all, one for all and one for rotations, three, or three and three for rotations."""
     return values[:3] if len(values) in (3, 6) else values[:1] * 3
 
 

@@ -100,7 +100,7 @@ class SwingingEnd:
 
     @cached_property
     def _circle(self) -> tuple[Array, Array, Array]:
-        """Its middle (3,) [m], the arm to the origin, and the arm a quarter turn on."""
+        """A circle's middle (3,) [m], the arm to the origin, and the arm a quarter turn on."""
         arm = self.origin - self.hub
         along = float(arm @ self.axis) * self.axis
         return self.hub + along, arm - along, np.asarray(np.cross(self.axis, arm), dtype=float)

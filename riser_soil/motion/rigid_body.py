@@ -44,7 +44,8 @@ class RigidBody:
         return x, v, a
 
     def attitude(self, t: float) -> Attitude:
-        """With spins e1 yaw', e2 pitch', e3 roll' about axes that turn: e2' = w1 x e2, e3' = (w1 + w2) x e3."""
+        """Attitude with spins e1 yaw', e2 pitch', e3 roll' about axes that turn: e2' = w1 x e2, e3' = (w1 + w2) x e3.
+        """
         angles, rates, accelerations = (values[3:] for values in self.six(t))
         forward, port, up = self.axes.T
         yawed = _turn(up, angles[2])

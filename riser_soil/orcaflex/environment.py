@@ -16,7 +16,8 @@ def surface_level(environment: Item) -> float:
 
 
 def water_depth(environment: Item) -> float:
-    """From the surface to a level seabed [m]; refused where there is none, where two differ, or it is not level."""
+    """Depth from the surface to a level seabed [m]; refused where there is none, where two differ, or it is not level.
+    """
     for key in ("SeabedSlope", "SeabedProfileFile"):
         if environment.word(key) not in ("", "0", "0.0"):
             environment.refuse(key, f"is {environment.word(key)}: only a level seabed can be carried over")

@@ -36,7 +36,7 @@ class PipeOfType:
 
     @property
     def outermost(self) -> float:
-        """With its coats [m]."""
+        """Diameter with coats [m]."""
         return self.outer + 2.0 * sum(thickness for thickness, _ in self.coats)
 
     @property

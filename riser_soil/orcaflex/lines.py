@@ -207,7 +207,7 @@ def _clump(item: Item) -> dict[str, Any]:
 
 
 def _by_axis(item: Item, key: str) -> list[float]:
-    """In x, y and z; in y as in x where it is not given."""
+    """Values in x, y and z; in y as in x where it is not given."""
     x, y, z = item.numbers(key, 3, math.nan)
     return [each if math.isfinite(each) else other for each, other in ((x, 0.0), (y, x), (z, 0.0))]
 

@@ -101,7 +101,7 @@ def _unlike(kind: Item, raos: Item) -> tuple[Item, str, str] | None:
 
 
 def _table(kind: Item, raos: Item) -> Table:
-    """By all frequencies that any direction has, in all directions of the vessel's symmetry."""
+    """RAO table by all frequencies that any direction has, in all directions of the vessel's symmetry."""
     rows = [*_rows(kind, raos)]
     frequencies = sorted({w for w, _, _ in rows if 0.0 < w < math.inf})
     if not frequencies:

@@ -76,7 +76,9 @@ _UNSTAMPED = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
 
 
 def save(figure: Figure, file: Path | str) -> Path:
-    """In the format of the file's ending: PNG, SVG or PDF; the same run gives the same file, but for the library."""
+    """Save a figure in the format of the file's ending: PNG, SVG or PDF; the same run gives the same file, but for the
+    library.
+    """
     with rc_context({"svg.hashsalt": "riser_soil"}):
         figure.savefig(file, dpi=120, metadata=_UNSTAMPED.get(Path(file).suffix))
     return Path(file)

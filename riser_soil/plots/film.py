@@ -76,7 +76,7 @@ def film(run: Run, file: Path, stage: str | None, period: float | None, field: s
 
 
 def _filmed(run: Run, stage: str | None, period: float | None) -> tuple[float, float]:
-    """From when to when [s]: the last whole cycle of the stage; all of it where it has no one period."""
+    """Time [s] that is filmed: the last whole cycle of the stage; all of it where it has no one period."""
     number = timed_stage(run, stage)
     try:
         last = cycles(run, number, period_of(run, number) if period is None else period)[-1]

@@ -151,7 +151,7 @@ def _use_note(results: FatigueResults) -> str:
 
 
 def _life_table(results: FatigueResults) -> ReportTable:
-    """At even steps along the line, and at the hotspots."""
+    """Table of life at even steps along the line, and at the hotspots."""
     count = len(results.damage.arc)
     even = np.unique(np.linspace(0, count - 1, min(MOST_ROWS, count)).round().astype(int))
     chosen = sorted({*even.tolist(), *results.hotspots})

@@ -159,7 +159,7 @@ def bar_shares(cases: Iterable[LoadCase]) -> dict[tuple[str, str], float]:
 
 
 def difference(value: Result, reference: Result, shares: Mapping[tuple[str, str], float]) -> float | None:
-    """By how much a result is more than another of its kind; None where that is less than their error bars, or than
+    """Amount by which a result exceeds another of its kind; None where that is less than their error bars, or than
     those of other cases, `bar_shares`.
     """
     apart = value.value - reference.value

@@ -87,7 +87,7 @@ def _text(case: LoadCase, paths: Sequence[str]) -> str:
 
 
 def _parameter(paths: tuple[str, ...], cases: Sequence[LoadCase]) -> Parameter:
-    """In the words of the axis of a case file whose labels go with its values one by one, if there is one."""
+    """Parameter in the words of the axis of a case file whose labels go with its values one by one, if there is one."""
     axes = dict.fromkeys(axis for case in cases for axis in case.axes)
     for axis in (axis for axis in axes if "." not in axis and axis != TABLE and not is_seed(axis)):
         pairs = {(case.axes[axis], _text(case, paths)) for case in cases if axis in case.axes}

@@ -138,7 +138,9 @@ def _with_ends_of(chain: BarChain, near: CableBalance) -> CableBalance:
 
 
 def _nearly(start: CableBalance, goal: SpanCondition) -> CableBalance:
-    """With nearly the H that reaches the goal, or with its least H where that reaches it too; mu is left as it is."""
+    """Balance with nearly the H that reaches the goal, or with its least H where that reaches it too; mu is left as it
+    is.
+    """
     low, high, h, least_H, chain = start, start, goal.h, goal.least_H, start.chain
     while high.reach < h:
         if high.H / chain.load > WIDEST:

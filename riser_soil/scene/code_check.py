@@ -76,7 +76,7 @@ class SteelCheck(Check):
 
     @property
     def thinning(self) -> float:
-        """By how much the wall may be thinner than nominal [m]."""
+        """Amount by which the wall may be thinner than nominal [m]."""
         return self.corrosion_allowance
 
     @model_validator(mode="after")

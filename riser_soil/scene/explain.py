@@ -274,7 +274,7 @@ def _bound(relation: str, name: str) -> _Explain:
 
 
 def _size(failure: Failure) -> Problem:
-    """Beyond the physical range of its quantity."""
+    """Problem of a value beyond the physical range of its quantity."""
     remedy = f"a riser of any scale keeps within; check unit and power of ten: {failure.here.description}"
     return failure.problem(failure.context["text"], remedy)
 

@@ -24,7 +24,9 @@ class Difference(NamedTuple):
 
 
 def identity_of(scene: Scene) -> dict[str, Any]:
-    """In JSON's terms: values, all defaults filled in, and by its key the SHA-256 of each file named."""
+    """Identity of a scene in JSON's terms: values, all defaults filled in, and by its key the SHA-256 of each file
+    named.
+    """
     values = scene.model_dump(mode="json", by_alias=True)
     return {"values": values, "files": {dotted(key): _digest(at) for key, at in paths_in(scene) if at.is_file()}}
 

@@ -76,7 +76,7 @@ def _without_lines(scene: Scene) -> Iterator[Problem]:
 
 
 def _moved(problems: list[Problem], name: str) -> Iterator[Problem]:
-    """With the paths that the keys of a line have in the scene."""
+    """Problems with the paths that the keys of a line have in the scene."""
     for problem in problems:
         yield Problem(path_of_line(problem.path, name), problem.allowed, problem.remedy)
 

@@ -29,18 +29,18 @@ class NetcdfVariable:
     attributes: Mapping[str, Any]
 
     def at(self, places: Mapping[str, int]) -> NetcdfVariable:
-        """At these places of dimensions, counted from 0; IndexError where there is none."""
+        """The variable at these places of dimensions, counted from 0; IndexError where there is none."""
         index = tuple(places.get(dim, slice(None)) for dim in self.dims)
         rest = tuple(dim for dim in self.dims if dim not in places)
         return NetcdfVariable(rest, self.values[index], self.attributes)
 
     def along(self, *dims: str) -> Any:
-        """Its array with the dimensions in this order."""
+        """The array with the dimensions in this order."""
         return np.transpose(self.values, [self.dims.index(dim) for dim in dims])
 
 
 def is_netcdf(file: Path) -> bool:
-    """By the file's name."""
+    """Whether it is a netCDF file, by its name."""
     return file.suffix.lower() in (".nc", ".nc4", ".h5")
 
 

@@ -106,7 +106,7 @@ class GivenPipe(NamedTuple):
         return isinstance(self.given.get("wall"), dict) or (steel and self.number("mass") > 0.0)
 
     def weight(self, water: float, contents: float) -> float:
-        """In the water [N/m], by densities [kg/m3]; 0 where it is not known."""
+        """Weight in the water [N/m], by densities [kg/m3]; 0 where it is not known."""
         outer, inner = self.diameters
         if given := number_of(self.given.get("submerged_weight")):
             return given
@@ -177,7 +177,7 @@ class GivenLine(NamedTuple):
 
     @property
     def contents(self) -> float:
-        """Their density [kg/m3]."""
+        """Density of the contents [kg/m3]."""
         return first_number(self.given, ("contents", "density"))
 
     @property

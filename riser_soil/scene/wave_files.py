@@ -103,7 +103,7 @@ def _by_direction(file: Path, at: Mapping[str, int], north: float) -> SpectrumTa
 
 
 def _one_sea(file: Path, efth: NetcdfVariable, at: Mapping[str, int]) -> NetcdfVariable:
-    """At the places that are asked for; a dimension of one place needs none."""
+    """Density at the places that are asked for; a dimension of one place needs none."""
     if "freq" not in efth.dims:
         raise wrong_file(f"{file}: efth has no dimension freq, but {', '.join(efth.dims)}; write it by wavespectra")
     others = {dim: size for dim, size in zip(efth.dims, efth.values.shape, strict=True) if dim not in ("freq", "dir")}
@@ -164,7 +164,7 @@ class ElevationRecord:
         return self.duration / max(1, sum(a < 0.0 <= b for a, b in pairwise(self.elevation)))
 
     def of_waves(self, numbers: range) -> "ElevationRecord":
-        """With the waves alone that have these numbers of periods in the record."""
+        """A spectrum with the waves alone that have these numbers of periods in the record."""
         waves = np.fft.rfft(self.elevation)
         waves[: numbers.start] = waves[numbers.stop :] = 0.0
         return ElevationRecord(self.step, tuple(map(float, np.fft.irfft(waves, len(self.elevation)))))

@@ -274,7 +274,9 @@ def _within(s: float, share: float) -> tuple[float, float]:
 
 @cache
 def _integrals(s: float) -> tuple[list[float], list[float]]:
-    """From 0 to each angle of an even grid to pi: of the energy, of any size, and of its moment with cos theta."""
+    """Integrals from 0 to each angle of an even grid to pi: of the energy, of any size, and of its moment with cos
+    theta.
+    """
     angles = [math.pi * n / _STEPS for n in range(_STEPS + 1)]
     density = [math.cos(0.5 * angle) ** (2.0 * s) for angle in angles]
     moment = [d * math.cos(angle) for d, angle in zip(density, angles, strict=True)]

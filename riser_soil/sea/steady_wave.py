@@ -50,7 +50,7 @@ class SteadyWave(NamedTuple):
 
     @property
     def length(self) -> float:
-        """From crest to crest [m]."""
+        """Length from crest to crest [m]."""
         return 2.0 * math.pi / self.k
 
     @property

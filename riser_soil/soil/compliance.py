@@ -62,7 +62,7 @@ class Compliance:
         self.kept = self._files.holds_any()
 
     def _key(self) -> str:
-        """By the cells' matrices, which follow from mesh and law, their places in the system, and the top's."""
+        """Key by the cells' matrices, which follow from mesh and law, their places in the system, and the top's."""
         block = self._soil.blocks()["soil"]
         values = {"soil": block.zeros()}
         _add_stiffness(self._soil, self._numbering.size, values)
@@ -242,7 +242,7 @@ class KeptColumns:
 
 
 def _root() -> Path:
-    """Beside the folders of the kernels' versions; in the kernels' own where that is a temporary one, alone."""
+    """Folder beside those of the kernels' versions; in the kernels' own where that is a temporary one, alone."""
     beside = compiled.FOLDER.parent
     return (beside if beside.name.startswith(compiled.NAME) else compiled.FOLDER) / "compliance"
 
@@ -259,7 +259,7 @@ def _make_workspace(folder: Path, size: int) -> None:
 
 
 def _last_use(path: Path) -> float:
-    """Another run may have removed it meanwhile."""
+    """Time of the last use; another run may have removed the file meanwhile."""
     with suppress(OSError):
         return path.stat().st_mtime
     return 0.0

@@ -66,7 +66,7 @@ def at_points(cell: str, degree: int, components: int) -> Any:
 
 
 def mixed(*elements: Any) -> Any:
-    """One element after the other."""
+    """The mixed element of these, one after the other."""
     return ufl.MixedElement(*elements) if OLD else _basix_ufl().mixed_element(list(elements))
 
 

@@ -44,7 +44,7 @@ class SoilField:
         self.total: Array = np.zeros(self.size)
 
     def hold(self, by_boundary: bool) -> None:
-        """From now on bottom and sides hold what they hold by default, or nothing."""
+        """Let bottom and sides hold what they hold by default, or nothing."""
         self.prescribed = self._ways_held[by_boundary]
 
     @property

@@ -61,7 +61,7 @@ class ImportedLaw(SoilLaw):
         return PORE_PRESSURE in columns
 
     def surface_modulus(self, width: float) -> float:
-        """At half the width below the surface, of soil at rest under its weight."""
+        """Modulus at half the width below the surface, of soil at rest under its weight."""
         depth = np.array([0.5 * width])
         vertical = self._above[0] * depth
         horizontal, none = self._above[1] * vertical, np.zeros((1, 3))

@@ -44,7 +44,7 @@ class LawSource(NamedTuple):
 
     @property
     def label(self) -> str:
-        """In messages."""
+        """The law's name in messages."""
         return f"{self.module or (self.file and self.file.name)}:{self.name}"
 
     @property

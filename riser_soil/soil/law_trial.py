@@ -57,7 +57,7 @@ def try_out(make: Make, depth: Array, initial: Array) -> None:
 
 
 def _begins_at_rest(law: OwnFormula) -> None:
-    """Its history, its elastic moduli, and no change of stress where there is no strain."""
+    """Check the law at rest: history, elastic moduli, and no change of stress where there is no strain."""
     start, none = law.start(), np.zeros((len(law.depth), 6))
     if not np.isfinite(start).all():
         raise LawError(f"start() is not finite at a depth of {law.depth[_first(start)]:.4g} m")
@@ -86,7 +86,7 @@ def _first(values: Array) -> int:
 
 
 def _follow(law: OwnFormula, direction: Array, dt: float) -> None:
-    """From the start, in increments of growing size."""
+    """Follow the law from the start, in increments of growing size."""
     history, before = law.start(), 0.0
     for size in SIZES:
         length = size - before

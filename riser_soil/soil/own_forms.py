@@ -195,7 +195,7 @@ def _checked(form: Any) -> Any:
 
 
 def _is_linear(form: Any) -> bool:
-    """In one test function, each of its terms."""
+    """Whether a form is linear in one test function, in each term."""
     try:
         check_form_arity(form, form.arguments())
     except (Exception, ArityMismatch):  # UFL has several, by release; this one is no Exception in all of them
@@ -217,7 +217,7 @@ def _alone(integral: Any, degree: int) -> Any:
 
 
 def _slope(form: Any, terms: Terms, number: int) -> Any:
-    """Its derivative by u or velocity; None where that is zero."""
+    """Derivative of a form by u or velocity; None where that is zero."""
     by = terms.u if number == U else terms.velocity
     if by not in form.coefficients():
         return None

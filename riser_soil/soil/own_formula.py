@@ -121,7 +121,7 @@ class OwnFormula(ABC):
 
 
 def infinite(depth: float, increment: Array) -> str:
-    """In words: at a point."""
+    """Place of an infinite value, in words."""
     return f"{at_point(depth, increment)}: stress or tangent is not finite"
 
 

@@ -28,7 +28,7 @@ class TrenchSpec:
 
     @property
     def half_width(self) -> float:
-        """At the seabed."""
+        """Half width at the seabed."""
         return 0.5 * self.width + self.side
 
     def finest(self, size: float) -> float:
@@ -57,7 +57,7 @@ class GrooveSpec:
 
     @property
     def half_angle(self) -> float:
-        """From the bottom of the pipe to where it leaves the soil [rad]."""
+        """Angle from the bottom of the pipe to where it leaves the soil [rad]."""
         return float(np.arccos(1.0 - self.depth / self.radius))
 
     def strips(self, size: float) -> int:
@@ -66,7 +66,7 @@ class GrooveSpec:
 
     @property
     def half_width(self) -> float:
-        """At the seabed, of the finest strips."""
+        """Half width at the seabed, of the finest strips."""
         return float(self.radius * np.sin(self.half_angle))
 
     def finest(self, size: float) -> float:

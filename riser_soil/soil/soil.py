@@ -102,7 +102,7 @@ class Soil:
         self.field.own(forces.force if self._has_inertia else forces.end)[:] += self._answer(state).force
 
     def hold(self, by_boundary: bool) -> None:
-        """From now on bottom and sides hold what they hold by default, or nothing; in systems that are made."""
+        """Let bottom and sides hold what they hold by default, or nothing; in systems that are made."""
         self.field.hold(by_boundary)
         self.surface.prescribed = self.grid.supported(self.surface.points, by_boundary).ravel()
 
@@ -111,7 +111,7 @@ class Soil:
         return self.cells.mean(of_depth(self.cells.at_points(self._depth)))
 
     def mix_elastic(self, share: float) -> None:
-        """From now on the tangent has a share of the elastic one; with 1 it is that of unloading, as in small
+        """Give the tangent a share of the elastic one; with 1 it is that of unloading, as in small
         vibrations about rest.
         """
         self._elastic_share = share
@@ -323,8 +323,8 @@ class Soil:
         return -mandel.mean(stress), mandel.von_mises(stress), strength_used, self._plastic_strain()
 
     def _answer(self, state: State) -> _Answer:
-        """At a trial state: the last one, as long as neither the soil's increments, the time that they take, where it
-        counts, nor its history change.
+        """The law's answer at a trial state: the last one, as long as neither the soil's increments, the time that they
+        take, where it counts, nor its history change.
         """
         u, dt = self.field.own(state.u), state.dt if self.law.by_rate else math.inf
         if self._last is None or dt != self._last.dt or not np.array_equal(u, self._last.u):

@@ -119,7 +119,7 @@ class PlaceStatistics:
 
     @cached_property
     def gumbel_fit(self) -> LocationScale:
-        """To the blocks' extremes, with `minima` to those of -x."""
+        """Fit to the blocks' extremes, with `minima` to those of -x."""
         return fit_gumbel(self.wanted.sign * self.maxima)
 
     @property
@@ -159,7 +159,7 @@ class PlaceStatistics:
         return self.mean + self.wanted.sign * height
 
     def _signed(self, interval: Interval) -> Interval:
-        """In the output's unit, the lower limit first."""
+        """Interval in the output's unit, the lower limit first."""
         if not np.isfinite(interval.value):
             return UNKNOWN
         limits = sorted((self.wanted.sign * interval.low, self.wanted.sign * interval.high))
@@ -167,6 +167,6 @@ class PlaceStatistics:
 
 
 def statistics_of(records: Records, wanted: Wanted) -> list[PlaceStatistics]:
-    """At each place of the records."""
+    """Statistics at each place of the records."""
     places = range(len(records.arc))
     return [PlaceStatistics([values[:, k] for values in records.values], records.step, wanted) for k in places]

@@ -61,7 +61,7 @@ class LocationScale(NamedTuple):
 
 
 def fit_gumbel(maxima: Array, smallest: bool = False) -> LocationScale:
-    """To largest values, or smallest ones; nan for fewer than three, or all of one value."""
+    """Fit to largest values, or smallest ones; nan for fewer than three, or all of one value."""
     if _indistinct(maxima):
         return LocationScale(np.nan, np.nan, len(maxima), smallest)
     location, scale = _family(smallest).fit(maxima)
@@ -93,7 +93,7 @@ class Weibull(NamedTuple):
 
 
 def fit_weibull(heights: Array) -> Weibull:
-    """To heights of peaks (n,), all > 0; nan for fewer than three, or all of one height."""
+    """Fit to heights of peaks (n,), all > 0; nan for fewer than three, or all of one height."""
     if _indistinct(heights):
         return Weibull(LocationScale(np.nan, np.nan, len(heights), smallest=True))
     return Weibull(fit_gumbel(np.log(heights), smallest=True))

@@ -20,7 +20,7 @@ ENDINGS = (".csv", ".json")
 
 
 class Place(NamedTuple):
-    """One place of an output, in all runs: what is told of it."""
+    """Statistics of an output at one place, over all runs."""
 
     records: Records
     arc: float

@@ -34,7 +34,9 @@ class Spectrum(NamedTuple):
 
 
 def spectrum(x: Array, step: float, segment: float | None = None) -> Spectrum:
-    """By Welch's method with Hann's window. segment: length [s] of the pieces, by default an eighth of the record."""
+    """Spectrum by Welch's method with Hann's window. segment: length [s] of the pieces, by default an eighth of the
+    record.
+    """
     length = len(x) // SEGMENTS if segment is None else round(segment / step)
     return Spectrum(*welch(x, 1.0 / step, nperseg=int(np.clip(length, 16, len(x)))))
 

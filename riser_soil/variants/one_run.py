@@ -95,7 +95,7 @@ def _computed(task: Task, wanted: Callable[[], bool]) -> Outcome:
 
 
 def _exit_status(returned: int) -> int:
-    """By the convention of shells."""
+    """Exit status by the convention of shells."""
     return returned if returned >= 0 else 128 - returned
 
 
@@ -106,7 +106,7 @@ def command(made: Path) -> list[str]:
 
 
 def _started(made: Path) -> subprocess.Popen[bytes]:
-    """In a session of its own: Ctrl-C in the terminal ends the command, and that the run."""
+    """Start the process in a session of its own: Ctrl-C in the terminal ends the command, and that the run."""
     with (made / PRINTED).open("wb") as printed:
         return subprocess.Popen(
             command(made), env=environment_alone() | {"OMP_NUM_THREADS": "1"}, stdin=subprocess.DEVNULL, stdout=printed,

@@ -15,7 +15,7 @@ _PR_SET_PDEATHSIG = 1  # Linux's prctl(2); it outlives execve(2)
 
 
 def die_with(parent: int) -> None:
-    """From now on this process is killed when its parent ends, however that comes; it leaves nothing that counts."""
+    """Have this process killed when its parent ends, however that comes; it leaves nothing that counts."""
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != parent:  # it ended before
         sys.exit(128 + signal.SIGKILL)
