@@ -276,7 +276,7 @@ def of_soil_precision() -> dict[str, str]:
         rows = list(csv.DictReader(file))
 
     def of(scene: str, method: str, figure: str, column: str = "error") -> dict[int, float]:
-        """By the number of cells to a diameter."""
+        """Table by the number of cells to a diameter."""
         asked = (scene, method, figure, "relative")
         matches = (row for row in rows if tuple(row[key] for key in ("scene", "method", "figure", "norm")) == asked)
         return {int(row["cells to a diameter"]): float(row[column]) for row in matches}

@@ -33,7 +33,7 @@ Draw = random.Random
 
 
 def _spread(draw: Draw, low: float, high: float) -> float:
-    """To three figures, evenly in the logarithm."""
+    """A random value of three figures, evenly in the logarithm."""
     return float(f"{low * (high / low) ** draw.random():.3g}")
 
 

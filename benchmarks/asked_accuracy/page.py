@@ -180,7 +180,9 @@ def _why(each: AskedScene) -> str:
 
 
 def soil_page(scenes: Iterable[AskedScene]) -> str:
-    """With the seconds of all runs taken for them, and how many quantities could not be judged."""
+    """Table of scenes on soil, with the seconds of all runs taken for them, and how many quantities could not be
+    judged.
+    """
     head = ["scene", "outcome", "true error", "setting", "everything s", "not judged"]
     return csv_table(head, [[*_reported(each), f"{each.seconds:.1f}", _left_out(each)] for each in scenes])
 

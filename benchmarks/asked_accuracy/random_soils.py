@@ -97,7 +97,7 @@ def in_time(name: str) -> Reached:
 
 
 def _limit_processor() -> None:
-    """To what is allowed, in the process that begins."""
+    """Limit the processor time of the process that begins."""
     resource.setrlimit(resource.RLIMIT_CPU, (ALLOWED, ALLOWED + 60))
 
 

@@ -48,7 +48,7 @@ def submerged_weight(pipe: Mapping) -> float:
 
 
 def spread(draw: Draw, low: float, high: float) -> float:
-    """To three figures, evenly in the logarithm."""
+    """A random value of three figures, evenly in the logarithm."""
     return float(f"{low * (high / low) ** draw.random():.3g}")
 
 
@@ -81,7 +81,7 @@ def _section(outer: float, mass: float, **stiffnesses: float) -> Mapping:
 
 
 def figures(x: float) -> float:
-    """To four figures: as an engineer would write it, and the same on all machines."""
+    """The number of four figures: as an engineer would write it, and the same on all machines."""
     return float(f"{x:.4g}")
 
 

@@ -123,7 +123,7 @@ def _values(scene: Scene, level: Level) -> Values:
 
 
 def _along(scene: Scene, level: Level) -> Scene:
-    """With cells along the riser that are finer than at first by less than across it."""
+    """The scene with cells along the riser that are finer than at first by less than across it."""
     soil = scene.soil
     assert soil is not None
     assert isinstance(soil.mesh, GeneratedMesh)

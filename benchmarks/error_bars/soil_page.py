@@ -79,7 +79,8 @@ def forecast_factors(known: dict[str, Reference]) -> dict[str, float]:
 
 
 def forecast_factor(mapping: SceneMapping, reference: Reference) -> float | None:
-    """None of a pipe that is pressed in, and where the reference has no settlement."""
+    """Factor of the forecast settlement; None of a pipe that is pressed in, and where the reference has no settlement.
+    """
     scene = scene_from_mapping(mapping)
     settled = reference.get(f"{scene.stages[0].name}: {SETTLEMENT}")
     if settled is None or scene.line.initial == "straight":

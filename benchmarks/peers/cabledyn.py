@@ -105,7 +105,7 @@ def _timed(folder: Path, deck: str) -> float:
 
 
 def _read(case: Case, elements: int, root: Path, seconds: float) -> Record:
-    """Its lines begin at the moved end, a record's at the held one."""
+    """Read a record of cabledyn: its lines begin at the moved end, a record's at the held one."""
     table = np.loadtxt(root.with_suffix(".out"), skiprows=2)
     position = np.empty((table.shape[0], 0, 2))
     if case.floor is not None:

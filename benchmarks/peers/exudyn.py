@@ -167,7 +167,9 @@ def _offset(case: Case, axis: int) -> object:
 
 
 def _static(mbs: Any, settings: Any, case: Case, cables: list[Any]) -> None:
-    """To rest by way of softer lines, since a catenary that is not stretched yet does not lead there at once."""
+    """Find the state of rest by way of softer lines, since a catenary that is not stretched yet does not lead there at
+    once.
+    """
     settings.solution.file.write = False
     settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
     settings.staticSolver.verboseMode = 0

@@ -82,5 +82,5 @@ def at_rest(name: str, parts: int) -> Array:
 
 
 def save(name: str, parts: int, to: str) -> None:
-    """To a file of numpy's."""
+    """Save the results to a file of numpy's."""
     np.save(to, at_rest(name, parts))

@@ -42,5 +42,5 @@ def run(name: str, parts: int, time_step: float) -> Moved:
 
 
 def save(name: str, parts: int, time_step: float, to: str) -> None:
-    """To a file of numpy's."""
+    """Save the results to a file of numpy's."""
     np.savez(to, **run(name, parts, time_step)._asdict())

@@ -72,5 +72,5 @@ def run(elements: int, time_step: float, force: float) -> case.Shaken:
 
 
 def save(elements: int, time_step: float, force: float, to: str) -> None:
-    """To a file of numpy's."""
+    """Save the results to a file of numpy's."""
     np.savez(to, **run(elements, time_step, force)._asdict())

@@ -81,7 +81,7 @@ def _draw_panel(axes: Axes, rows: Sequence[Row], panel: Panel) -> None:
 
 
 def _draw_peers(axes: Axes, peers: str) -> None:
-    """From the table of a pipe pressed into clay: how far each program's force is off the finest mesh's."""
+    """Plot from the table of a pipe pressed into clay: how far each program's force is off the finest mesh's."""
     curve_points: dict[str, list[tuple[float, float]]] = {}
     for line in block(peers, "clay").splitlines()[2:]:
         cells = [cell.strip() for cell in line.strip("|").split("|")]

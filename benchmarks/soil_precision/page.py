@@ -32,7 +32,7 @@ def write(runs: Sequence[Measured]) -> None:
 
 
 def cheapest_table(rows: Sequence[Row]) -> str:
-    """By figure, the reference's uncertainty and the cheapest method of each accuracy."""
+    """Table by figure: the reference's uncertainty and the cheapest method of each accuracy."""
     head = ["figure", "±", *(f"{100.0 * accuracy:g} % by" for accuracy in ACCURACIES)]
     return table(head, [_line(rows, panel) for panel in PANELS if panel.told])
 
@@ -49,7 +49,7 @@ def _cell(row: Row | None) -> str:
 
 
 def made(runs: Sequence[Measured]) -> str:
-    """By which command, on which machine and versions, in what time."""
+    """Line on how the page was made: command, machine and versions, in what time."""
     seconds = sum(run.seconds for run in runs)
     dolfinx = importlib.metadata.version("fenics-dolfinx")
     return (
@@ -59,7 +59,7 @@ def made(runs: Sequence[Measured]) -> str:
 
 
 def _processor() -> str:
-    """By Linux's list, else its kind."""
+    """The processor's name by Linux's list, else its kind."""
     listed = Path("/proc/cpuinfo")
     lines = listed.read_text(encoding="utf-8").splitlines() if listed.exists() else []
     return next((line.partition(": ")[2] for line in lines if line.startswith("model name")), platform.machine())

@@ -48,7 +48,7 @@ class Storms:
 
     @cached_property
     def damage(self) -> YearlyDamage:
-        """By each storm, as if it blew all year."""
+        """Damage by each storm, as if it blew all year."""
         storms = (str(self.runs[name].folder.resolve()) for name in ("first", "second"))
         cases = tuple(FatigueCase(run=folder, stage="storm", share=0.5) for folder in storms)
         curve = DNVCurve(dnv="D", environment="cathodic-protection")

@@ -85,12 +85,12 @@ def sentences(results: Found) -> Texts:
 
 
 def beside(mine: float, its: float, digits: int) -> str:
-    """By how many per cent a value differs from the block's."""
+    """Difference in per cent of a value from the block's."""
     return f"{100.0 * abs(mine / its - 1.0):.{digits}f}"
 
 
 def rounded(seconds: float) -> float:
-    """To two figures: what machines agree on, and no more."""
+    """The number of two figures: what machines agree on, and no more."""
     return round(seconds, 1 - math.floor(math.log10(seconds)))
 
 

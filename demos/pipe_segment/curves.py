@@ -40,7 +40,7 @@ def cyclic_path() -> PenetrationPath:
 
 
 def _through(*corners: float) -> PenetrationPath:
-    """From the surface, corner by corner, over D; short steps after each."""
+    """Path from the surface, corner by corner, over D; short steps after each."""
     pieces = (path_through(D * np.array([b]), D * a, D * STEP).w[1:] for a, b in pairwise((0.0, *corners)))
     return PenetrationPath(np.concatenate([np.zeros(1), *pieces]), np.zeros(0))
 

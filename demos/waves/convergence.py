@@ -42,7 +42,7 @@ def shortened(factor: float) -> list[str]:
 
 
 def extremes(run: Run) -> dict[str, float]:
-    """From SINCE on: tension at the turret [kN], moments by zone [kN m], touchdown arc [m]."""
+    """Extremes from SINCE on: tension at the turret [kN], moments by zone [kN m], touchdown arc [m]."""
     window = run.time >= SINCE
     tension, moment = 1e-3 * run["effective_tension"][window, -1], 1e-3 * run["bending_moment"][window]
     values = {"T min": -float(peak(run.time[window], -tension)), "T max": float(peak(run.time[window], tension))}

@@ -81,7 +81,9 @@ def heave_of_top() -> dict[str, Any]:
 
 @pytest.mark.verify
 def test_all_weight_is_borne(tmp_path: Path) -> None:
-    """By soil and seabed, supports and the buoy, at rest, but for what the soil's last move leaves out of balance."""
+    """Soil and seabed, supports and the buoy bear all weight, at rest, but for what the soil's last move leaves out of
+    balance.
+    """
     hung = ran(hung_over_clay(heave_of_top()), tmp_path)
     at = int(np.searchsorted(hung["stage"], 1)) - 1
     up, weight = 0.0, 0.0

@@ -86,7 +86,9 @@ def test_a_buoy_on_three_lines_rests_where_catenaries_balance_it(tmp_path: Path)
 
 @pytest.mark.parametrize("body", [POINT, RIGID], ids=["point", "rigid"])
 def test_a_buoy_on_one_line_rises_over_its_anchor(body: dict[str, Any], tmp_path: Path) -> None:
-    """From aside; nothing keeps a rigid one from turning about the line. Its buoyancy is the tension at its foot."""
+    """The buoy begins aside; nothing keeps a rigid one from turning about the line. Its buoyancy is the tension at its
+    foot.
+    """
     scene, arm = mooring(body=body), 1.0 if body is RIGID else 0.0
     for kind, key in (("lines", "east"), ("joints", "east_top")):
         scene[kind] = {key: scene[kind][key]}
@@ -124,7 +126,7 @@ def test_a_force_pulls_a_buoy_aside_as_its_catenary_lets_it(tmp_path: Path) -> N
 
 
 def test_a_moment_heels_a_buoy_until_it_is_righted(tmp_path: Path) -> None:
-    """By buoyancy above, weight below, and the line's pull at its arm."""
+    """Buoyancy above, weight below, and the line's pull at its arm."""
     M, B, W = 9.0e3, RIGID["volume"] * RHO * G, RIGID["mass"] * G
     run = run_of(on_one_line(RIGID, {"moment": [0.0, M, 0.0]}), tmp_path)
     righting = B * RIGID["centre_of_buoyancy"][2] - W * RIGID["centre_of_gravity"][2] + (B - W) * 1.0
@@ -504,7 +506,7 @@ def test_error_bars_of_each_line_hold(tmp_path: Path) -> None:
 
 
 def test_a_search_for_an_accuracy_begins_with_even_elements_of_each_line() -> None:
-    """By its length; steps by the shortest period of what moves, here an anchor's 3 s."""
+    """Elements follow from the line's length; steps from the shortest period of what moves, here an anchor's 3 s."""
     asked = mooring(shaken(4.0), accuracy="4 %")
     for length, line in zip((130.0, 200.0, 300.0), asked["lines"].values(), strict=True):
         line["segments"][0]["length"] = length

@@ -57,8 +57,8 @@ SCENES = {"hanging": hanging, "bouncing": bouncing}
 
 @dataclass
 class Counts:
-    """By step: choices of the linear solver (True: the riser alone), evaluations of the law, factorisations by PETSc;
-    places of the riser's nodes, largest displacement of this rank's soil [m].
+    """Counts by step: choices of the linear solver (True: the riser alone), evaluations of the law, factorisations by
+    PETSc; places of the riser's nodes, largest displacement of this rank's soil [m].
     """
 
     alone: list[list[bool]] = field(default_factory=list)

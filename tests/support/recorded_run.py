@@ -147,7 +147,7 @@ class Catenary:
         }
 
     def sections(self) -> dict[str, Any]:
-        """One, where the riser lies at first."""
+        """One section, where the riser lies at first."""
         position, direction = np.array([[30.0, 0.0, RADIUS]]), np.array([[0.0, 1.0, 0.0]])
         trough = 0.002 * np.exp(-((np.array(FACTS.offsets) / 0.6) ** 2))
         return {

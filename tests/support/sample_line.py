@@ -93,7 +93,7 @@ class Sample:
         return EndSpring(self.line, -1, 800.0)
 
     def turned_spring(self) -> EndSpring:
-        """Its support has turned about the normal of the sample's plane."""
+        """A spring whose support has turned about the normal of the sample's plane."""
         rotation, still = 0.9 * np.cross(DIRECTION, UP), np.zeros(3)
         self.line.end.turning = lambda t: SupportRotation(t * rotation, rotation, still)
         return self.spring()

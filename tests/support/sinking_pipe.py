@@ -21,8 +21,8 @@ CLAY: Mapping = {"kind": "von-mises", "su": SU, "E_over_su": STIFF}
 
 
 def sinking(across: int, depth: float, steps: int, law: Mapping = CLAY, **more: Any) -> Mapping:
-    """To an embedment of `depth` diameters in so many steps, on so many cells across the pipe; one cell is plane
-    strain. more: keys of the soil; contact: of contact.
+    """A scene that presses a pipe to an embedment of `depth` diameters in so many steps, on so many cells across the
+    pipe; one cell is plane strain. more: keys of the soil; contact: of contact.
     """
     size, contact = D / across, more.pop("contact", {})
     mesh = cells({"along": size, "across": size, "strip": (1.5 + depth) * D}, D)

@@ -21,7 +21,7 @@ def resistance(law: Any, v: Array, tau: Array) -> Array:
 
 
 def derivatives(law: Any, v: Array, tau: Array) -> tuple[Array, Array]:
-    """By v and by the axis' slope, each (d, d), of an unstretched pipe."""
+    """Derivatives by v and by the axis' slope, each (d, d), of an unstretched pipe."""
     by_v, by_slope = np.empty((2, v.size, v.size))
     write_derivatives.kernels[type(law)](law, 0, 0, v, tau, 1.0, 1.0, by_v, by_slope, fixed(v.size))
     return by_v, by_slope

@@ -58,7 +58,9 @@ def test_it_takes_as_many_iterations() -> None:
 
 @LINEAR
 def test_contact_that_sets_in_within_a_step_is_solved_with_the_soil(linear: str) -> None:
-    """It strikes as the step begins, and for the second time within one; the soil yields, and is left alone between."""
+    """The pipe strikes as the step begins, and for the second time within one; the soil yields, and is left alone
+    between.
+    """
     counts = run("bouncing", linear)
     assert all(all(step) for step in counts.alone[:FALLS])
     assert not any(counts.alone[FALLS])
@@ -74,7 +76,9 @@ def test_soil_that_is_left_is_brought_to_rest_first() -> None:
 @pytest.mark.verify
 @pytest.mark.parametrize(("name", "linear"), [("hanging", "kept"), ("bouncing", "direct"), ("bouncing", "kept")])
 def test_two_ranks_find_the_same(name: str, linear: str) -> None:
-    """They choose alike, and as one rank does; whether a step that changes nothing takes an iteration is round-off."""
+    """Two ranks choose alike, and as one rank does; whether a step that changes nothing takes an iteration is
+    round-off.
+    """
     both, one = run_on_two_ranks(name, linear), run(name, linear)
     require_same_states(both, one)
     assert all(alone for counts in (both, one) for step in counts.alone[:FALLS] for alone in step)

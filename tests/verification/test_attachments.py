@@ -154,8 +154,8 @@ def lowest_frequency(place: float, mass: float, count: int) -> float:
 
 
 def exact_frequency(place: float, mass: float) -> float:
-    """By the deflection F/T [a b/L - sinh(ka) sinh(kb)/(k sinh(kL))], k^2 = T/EI, under a force F of a pinned beam with
-    tension T (Timoshenko and Gere, Theory of Elastic Stability, 1961, chapter 1).
+    """Frequency by the deflection F/T [a b/L - sinh(ka) sinh(kb)/(k sinh(kL))], k^2 = T/EI, under a force F of a pinned
+    beam with tension T (Timoshenko and Gere, Theory of Elastic Stability, 1961, chapter 1).
     """
     k, a, b = np.sqrt(TENSION / EI), place, LENGTH - place
     layer = np.sinh(k * a) * np.sinh(k * b) / (k * np.sinh(k * LENGTH))
@@ -249,7 +249,8 @@ def pressed_in(count: int, EI: float, clump: float) -> tuple[float, float]:
 
 
 def test_a_clump_on_a_lying_pipe_sinks_in_as_a_beam_on_springs_does() -> None:
-    """By W lambda/(2 k) beyond the pipe's own w/k, with lambda^4 = k/(4 EI): elements must resolve 1/lambda = 2.5 m.
+    """The clump sinks by W lambda/(2 k) beyond the pipe's own w/k, with lambda^4 = k/(4 EI): elements must resolve
+    1/lambda = 2.5 m.
 
     Its weight is all borne by the bed, however long the elements are.
     """

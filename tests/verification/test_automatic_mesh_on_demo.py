@@ -45,7 +45,7 @@ def automatic(across: float = 1.0, along: float = 1.0, element: float = 0.5) -> 
 
 @pytest.mark.verify
 def test_half_of_all_cells_changes_little() -> None:
-    """From cells 1.5 times as long: half of those as they are would be 80 thousand unknowns.
+    """The cells compared are 1.5 times as long: half of those as they are would be 80 thousand unknowns.
 
     The settlement that is missing, by first order twice what half of all cells change, is what `check` tells of
     automatic cells, within 0.04.

@@ -95,7 +95,7 @@ def test_the_count_knows_the_load_to_a_hundredth(elements: int, dimension: int, 
 
 @pytest.mark.verify
 def test_two_ranks_count_as_one() -> None:
-    """By MUMPS, where one rank has PETSc's own factorisation."""
+    """Two ranks count by MUMPS, where one rank has PETSc's own factorisation."""
     script = (
         "from tests.verification.test_buckled_branches import unstable_modes\n"
         "from tests.support.scenes import column\n"

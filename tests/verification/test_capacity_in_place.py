@@ -26,7 +26,7 @@ GIVES, SLIDES, PUSHED, ELASTIC = 1.0, 0.1, 3.0, 50.0
 
 
 def half_angle(w: float) -> float:
-    """From the bottom of a pipe embedded by w (over D) to where it leaves the clay [rad]."""
+    """Angle from the bottom of a pipe embedded by w (over D) to where it leaves the clay [rad]."""
     return float(np.arccos(1.0 - 2.0 * w))
 
 
@@ -120,7 +120,7 @@ def fitted(w: float, rough: bool) -> float:
 
 
 def fallen(load: Array) -> float:
-    """By how much the load ever falls below what it has been, over its peak."""
+    """Amount by which the load ever falls below what it has been, over its peak."""
     return float(np.max(np.maximum.accumulate(load) - load) / load.max())
 
 
@@ -176,7 +176,7 @@ def test_capacity_from_two_meshes(tell: Tell, w: float, rough: bool) -> None:
 
 
 def extrapolated(coarse: float, fine: float, strips: tuple[int, int]) -> tuple[float, float]:
-    """To cells without size, by the first and by the second order."""
+    """Load extrapolated to cells without size, by the first and by the second order."""
     ratio = strips[1] / strips[0]
     first, second = (fine + (fine - coarse) / (ratio**order - 1.0) for order in (1, 2))
     return first, second

@@ -46,7 +46,7 @@ def catenary(arc: Array) -> tuple[float, Array]:
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_chain_hangs_as_the_catenary(dimension: int) -> None:
-    """To fourth order, as curved elements follow it."""
+    """The chain agrees to fourth order, as curved elements follow it."""
     off = list[float]()
     for elements in (20, 40):
         history = stage_histories(hung(elements, dimension))[0]

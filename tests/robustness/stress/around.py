@@ -41,7 +41,7 @@ class StressedScene:
 
     @property
     def run(self) -> Run | None:
-        """Its results, where it left some."""
+        """Results of a run, where it left some."""
         folder = self.place / "scene"
         return Run(folder) if (folder / "summary.json").is_file() else None
 

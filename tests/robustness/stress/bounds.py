@@ -121,7 +121,8 @@ class Answer:
 
     @property
     def severity(self) -> tuple[bool, bool, float]:
-        """By which the worst of several answers is found: one that does not hold, else an exact one, else a bound."""
+        """Key by which the worst of several answers is found: one that does not hold, else an exact one, else a bound.
+        """
         if not math.isfinite(self.value):
             return True, True, math.inf
         if self.exact is not None:

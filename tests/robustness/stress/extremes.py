@@ -153,7 +153,7 @@ def _is_moved(acts: Any) -> bool:
 
 
 def _with_motions(scene: Scene, change: Callable[[Any], Any]) -> Scene:
-    """With other motions of ends where there are some."""
+    """Variants with other motions of ends where there are some."""
     stages = []
     for stage in scene.stages:
         for line in risers(scene):

@@ -53,7 +53,7 @@ def test_a_straight_line_misses_a_parabola_by_the_share() -> None:
 
 
 def test_a_smaller_moment_may_be_missed_by_more() -> None:
-    """By a fifth of the 250 N m that it is below the largest."""
+    """A moment may be missed by a fifth of the 250 N m that it is below the largest."""
     aside = asked(envelope(record(BULGE, EVEN)), 25.0)
     assert aside**2 * 0.8 / 8.0 == pytest.approx(MISSED + 50.0, rel=1e-3)
 
@@ -90,7 +90,7 @@ def test_the_worst_instant_counts() -> None:
 
 
 def test_what_is_not_resolved_shrinks_step_by_step() -> None:
-    """To a sixth from one run to the next."""
+    """Elements shrink to a sixth from one run to the next."""
     spike = np.where(ARC == 50.0, 1e3, 0.0)
     assert asked(envelope(record(spike, EVEN)), 50.0) == pytest.approx(0.5 / 6.0)
 

@@ -386,7 +386,7 @@ def test_a_scene_may_ask_for_bars(tmp_path: Path) -> None:
 
 
 def test_what_cannot_be_varied_has_no_bar(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It must not look exact."""
+    """A quantity without a variation must not look exact."""
     monkeypatch.setattr(settings, "MOST_ELEMENTS", 7)
     (coarser,) = chain.comparison_runs(scene_from_mapping(SCENES["cantilever, tip load"]), None)
     assert coarser.extremes is None

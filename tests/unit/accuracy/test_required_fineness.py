@@ -96,7 +96,7 @@ def test_soil_is_at_most_twice_as_fine_in_the_next_run() -> None:
 
 
 def test_what_the_runs_that_are_left_can_not_reach_is_out_of_reach() -> None:
-    """By the elements and the steps that it asks for, four times as many a run; soil's price has limits of its own."""
+    """The accuracy asks for elements and steps, four times as many a run; soil's price has limits of its own."""
     aim = MARGIN * 0.01 - SMALLEST
     for given in (bar(mesh=15.0 * aim), bar(time=15.0 * aim), bar(soil=1.0)):
         assert out_of_reach([given], 0.01, 1) == 0.0
@@ -125,7 +125,9 @@ def test_shares_fall_by_their_orders() -> None:
     [(4.0, SAFETY["penalty"] * 4.0 / 3.0), (1e-3, BY_CHANCE * 5.0), (12.0, SAFETY["penalty"] * 12.0 / 3.0)],
 )
 def test_share_of_a_source_that_is_finer_alone_is_by_the_difference(change: float, share: float) -> None:
-    """By Richardson's extrapolation, be it more than predicted by the order, but no less than a part of that."""
+    """The share is by Richardson's extrapolation, be it more than predicted by the order, but no less than a part of
+    that.
+    """
     runs, factors = (values(1000.0), values(1000.0 + change)), {"penalty": 4.0 ** (1 / 0.75)}
     (predicted,) = predicted_bars([bar(penalty=0.02)], *runs, factors)
     assert predicted.by_source["penalty"] == pytest.approx(share)

@@ -161,7 +161,7 @@ def test_a_target_finer_than_the_reference_counts_what_can_be_reported(
 
 
 def test_a_scene_that_fails_is_studied_around_finer_settings(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """It runs with steps of a quarter: 0.0025 s, elements of a quarter, too. What failed is a row."""
+    """The scene runs with steps of a quarter: 0.0025 s, elements of a quarter, too. What failed is a row."""
     results = {"heave: top tension": KeyResult("heave", "top tension", "N", 100.0, 0.0)}
 
     def outcome(factors: Factors, scene: Scene) -> PointOutcome:

@@ -56,7 +56,7 @@ def test_every_step_dissipates_and_keeps_to_its_limits(numbers: list[float], N: 
 @pytest.mark.parametrize("most", [np.inf, 0.4, 0.1], ids=["coulomb", "adhesion across", "adhesion"])
 @pytest.mark.parametrize("N", [5.0, 0.7, 0.0])
 def test_derivatives_of_the_return_map(N: float, most: float) -> None:
-    """By t*, and by the penetration, with which both the normal force and the adhesion change."""
+    """Derivatives by t* and by the penetration, with which both the normal force and the adhesion change."""
     t, h, slope, widening = np.array([0.25, -0.6]), 1e-6, 1.3, 0.2
 
     def at(guess: Array, deeper: float) -> tuple[Array, Array, Array]:

@@ -122,7 +122,7 @@ def test_the_block_lies_around_the_touchdown_points() -> None:
 
 
 def test_the_block_follows_the_reach_of_the_motion() -> None:
-    """By 1.25 times what catenaries between the moved ends say."""
+    """The block reaches 1.25 times as far as catenaries between the moved ends say."""
     moving = automatic(LAY, heave(3.0, amplitude=1.0))
     predicted = forecast(moving, elements_of(moving), list(end_places(moving, sea_of(moving))))
     assert predicted is not None
@@ -134,7 +134,9 @@ def test_the_block_follows_the_reach_of_the_motion() -> None:
 
 
 def test_cells_of_a_block_grow_where_the_riser_does_not_touch_down() -> None:
-    """From three bending lengths before the touchdown points of the motion to a cell beyond; sections stay alike."""
+    """Cells stay small from three bending lengths before the touchdown points of the motion to a cell beyond; sections
+    stay alike.
+    """
     scene = automatic(LAY, heave(3.0, amplitude=1.0))
     predicted = forecast(scene, elements_of(scene), list(end_places(scene, sea_of(scene))))
     assert predicted is not None

@@ -195,7 +195,7 @@ def test_bodies_in_waves_over_a_grid_have_the_depth_that_is_given(tmp_path: Path
 
 
 def test_all_that_floats_has_the_same_waves(monkeypatch: pytest.MonkeyPatch) -> None:
-    """They are drawn once, and not anew for each stage, line or body."""
+    """Waves are drawn once, and not anew for each stage, line or body."""
     waves = {"jonswap": {"Hs": 2.0, "Tp": 8.0, "components": 5}}
     water = {"density": 1025.0, "surface_level": 0.0, "depth": 100.0, "waves": waves}
     drawn, usual = list[float](), spectra.components

@@ -97,7 +97,7 @@ def test_force_and_moment_over_a_step_are_the_changes_of_momentum() -> None:
 
 
 def test_a_free_body_keeps_both_momenta_and_energy_errs_in_second_order() -> None:
-    """With added masses that differ and centres beside its origin."""
+    """The body has added masses that differ and centres beside its origin."""
     ranges = []
     for dt in (0.1, 0.05):
         linear, angular, energy = flown(body(), GENERAL, RATES, dt, round(10.0 / dt))

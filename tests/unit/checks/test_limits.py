@@ -131,7 +131,7 @@ def test_what_exceeds_the_disk_is_refused_with_the_numbers(tmp_path: Path, monke
 
 
 def test_a_long_run_is_warned_of_with_its_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its records take some 40 GB, which a machine may have or not."""
+    """The run's records take some 40 GB, which a machine may have or not."""
     monkeypatch.setattr(limits, "free_disk", lambda folder: 1e12)
     patient = scene_from_mapping(timed(duration=4.0e6, output={"interval": 1.0e4}))
     report = describe(patient)

@@ -35,7 +35,7 @@ def test_capacity_of_a_strip() -> None:
 
 @pytest.mark.parametrize(("law", "a"), [(randolph_quiggin, 6.0), (aubeny_biscontin, 6.73)])
 def test_capacity_of_hysteretic_clay(law: Callable[..., NormalLaw], a: float) -> None:
-    """Its bearing resistance a su D one diameter deep, where it has been reached."""
+    """The capacity is the bearing resistance a su D one diameter deep, where it has been reached."""
     clay = law(D, su=500.0, su_gradient=1000.0)
     assert clay.capacity == pytest.approx(a * (500.0 + 1000.0 * D) * D)
 

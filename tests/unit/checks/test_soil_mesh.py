@@ -83,7 +83,9 @@ def test_cells_are_long_along_the_riser_and_fine_across(axis: int) -> None:
 
 @pytest.mark.parametrize("axis", [0, 1])
 def test_cells_grow_along_the_riser_beyond_the_touchdown_zone(axis: int) -> None:
-    """To the size far off or four of their lengths, whichever is more; in sections, and where the zone is all, none."""
+    """Cells grow to the size far off or four of their lengths, whichever is more; in sections, and where the zone is
+    all, none.
+    """
     spec = replace(LONG, x=(0.0, 20.0), size_far=1.0, touchdown=(6.0, 12.0))
     if axis == 1:
         spec = replace(spec, x=spec.y, y=spec.x, riser=((0.3, 0.0), (0.3, 80.0)))

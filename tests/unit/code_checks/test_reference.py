@@ -17,7 +17,7 @@ def at(*values: float) -> SectionEffects:
 
 
 def tensions(effects: LoadEffects) -> list[list[float]]:
-    """By kind, at instants; the moments follow."""
+    """Tensions by kind, at instants; the moments follow."""
     for each in effects:
         assert np.array_equal(each.moment_y, 2.0 * each.tension)
         assert np.array_equal(each.moment_z, 3.0 * each.tension)

@@ -80,7 +80,7 @@ main()
 
 
 def test_unexpected_error_of_one_rank_within_a_stage_ends_all(tmp_path: Path) -> None:
-    """It holds factors then, which it can't give back without the others."""
+    """A rank holds factors then, which it can't give back without the others."""
     done = mpirun(2, "-c", WITHIN, folder=tmp_path)
     assert done.returncode == 1
     assert "ZeroDivisionError: bug" in done.stderr

@@ -96,7 +96,7 @@ def readings(contact: SoilContact, state: State) -> list[Array]:
 
 @METHODS
 def test_the_part_takes_over_what_was_found_at_a_step_s_end(method: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is what it would find itself, and stays as it is when the solver goes on."""
+    """The part has what it would find itself, and stays as it is when the solver goes on."""
     case, other = Beside(method), Beside(method)
     end = case.moved(1e-3, 2e-3, -3e-3)
     case.at(end)

@@ -128,7 +128,9 @@ def test_no_facet_outside_the_surface(nv: int) -> None:
 
 @KINDS
 def test_the_facet_is_found_where_the_surface_has_moved_far_sideways(nv: int) -> None:
-    """By more than a facet, which the plan of the reference geometry knows nothing of; beyond its end, too."""
+    """The surface has moved by more than a facet, which the plan of the reference geometry does not show; beyond its
+    end, too.
+    """
     points, facets = grid(nv)
     place = np.array([0.2, 0.3])
     for moved in ([0.9, 0.0, 0.0], [-0.4, -0.7, 0.0], [5.0, 0.0, 0.0]):

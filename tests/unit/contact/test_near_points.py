@@ -62,7 +62,7 @@ def axis_of(stretch: float, bend: float) -> Axis:
 def test_no_point_within_the_gap_is_passed_over(
     stretch: float, bend: float, soil: Callable[[int], Surface], turned: int
 ) -> None:
-    """Beside a search so wide that every point is tried on every element."""
+    """The search is compared with one so wide that every point is tried on every element."""
     axis, surface = axis_of(stretch, bend), soil(turned)
     facets = np.repeat(np.arange(len(surface.facets)), 2)
     pairs = np.tile([0, 1], len(surface.facets)), facets
@@ -89,7 +89,9 @@ def test_points_beyond_the_workspace_are_counted_and_given_workspace(monkeypatch
 @pytest.mark.parametrize("along", [(1.0, 0.0), (0.0, 1.0), (0.6, 0.8), (-0.8, 0.6)])
 @pytest.mark.parametrize("corners", [[0, 1, 2], [1, 2, 0], [2, 1, 0]])
 def test_points_of_a_triangle_sum_its_area_and_its_moments(along: tuple[float, float], corners: list[int]) -> None:
-    """To second order in their spacing; none lies farther across the riser from the next than asked for."""
+    """Sums are right to second order in the points' spacing; none lies farther across the riser from the next than
+    asked for.
+    """
     at = np.array([[0.0, 0.0, 0.1], [0.9, 0.2, 0.0], [0.3, 0.7, 0.4]])[corners]
     points = np.concatenate([at, 0.5 * (at + np.roll(at, -1, axis=0))])
     moment, moments = np.mean([np.outer(x, x) for x in points[3:]], axis=0), []
@@ -122,7 +124,7 @@ def test_cells_far_larger_than_what_touches_have_no_more_points_along_than_they_
 
 
 def test_a_riser_on_stiff_clay_of_tetrahedra_has_no_more_points_along_than_it_needs() -> None:
-    """It touches by millimetres on cells of half a metre: as many points along as across would be millions."""
+    """The riser touches by millimetres on cells of half a metre: as many points along as across would be millions."""
     contact = soil_under(built(touchdown(LAY, kind="tet", su=1.0e6))).contact
     assert isinstance(contact, SurfaceContact)
     across, along = contact._parts[:, 0], contact._parts[:, 1]

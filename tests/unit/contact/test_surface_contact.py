@@ -156,7 +156,9 @@ def test_nothing_touches_above_the_soil() -> None:
 @KINDS
 @DIMENSIONS
 def test_along_the_riser_the_soil_gets_what_the_riser_loses(kind: str, dimension: int) -> None:
-    """From the soil's nodes: in sum what they get, and at each node of the riser the size of what it bears."""
+    """The force per length is from the soil's nodes: in sum what they get, and at each node of the riser the size of
+    what it bears.
+    """
     surface = top(kind)
     surface.committed = 0.01 * np.random.default_rng(5).normal(size=surface.points.shape)
     made = pipe_on_surface(sagging(angle=0.3 * (dimension == 3)), surface, dimension)

@@ -124,7 +124,7 @@ def test_with_an_angle_clay_and_raos_it_runs_as_it_is(
 @pytest.mark.parametrize("kind", HANGING)
 @pytest.mark.parametrize("depth", [80.0, 1200.0])
 def test_a_line_hangs_at_its_angle_from_where_it_should_touch_down(kind: str, depth: float) -> None:
-    """By the program's own cable, which stretches, lies on the ground and has all the line's weights."""
+    """The angle is by the program's own cable, which stretches, lies on the ground and has all the line's weights."""
     drafted = scene(kind, Wishes(depth=depth))
     cable = build(drafted, communicator_of(drafted)).riser.catenary
     assert cable is not None

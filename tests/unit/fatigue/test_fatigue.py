@@ -53,7 +53,7 @@ def test_curves_have_their_printed_fatigue_limits(name: CurveClass, limit: float
 @pytest.mark.parametrize("name", CLASSES)
 @pytest.mark.parametrize("environment", ENVIRONMENTS)
 def test_branches_of_the_curves_meet(name: CurveClass, environment: Environment) -> None:
-    """To the three decimals that logarithms are printed with."""
+    """Branches meet to the three decimals that logarithms are printed with."""
     curve = dnv_curve(name, environment)
     for log_a, m, change in zip(curve.log_a, curve.m, curve.change, strict=False):
         S = 10.0 ** ((log_a - math.log10(change)) / m)

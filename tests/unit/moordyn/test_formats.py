@@ -102,7 +102,7 @@ def test_entries_beyond_the_columns_are_reported(part: str, old: str, new: str, 
 
 
 def test_columns_that_moordyn_does_not_have(tmp_path: Path) -> None:
-    """Their values are reported, unless they are 0."""
+    """Values of unknown columns are reported, unless they are 0."""
     extra = [TYPES[0] + " MBL", TYPES[1] + " (N)", TYPES[2] + " 2e6", TYPES[2].replace("rope", "spare") + " 0"]
     line_with(imported(tmp_path, text_of_deck(line_types=extra))[1], "5:", "2e6 under MBL", "LINE TYPES")
 

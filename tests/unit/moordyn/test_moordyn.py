@@ -77,7 +77,7 @@ def read(deck: Deck, line: str | None = None) -> Mapping:
 
 
 def test_a_lazy_wave(tmp_path: Path) -> None:
-    """From the anchor, along lines that are written in either direction."""
+    """The riser goes from the anchor, along lines that are written in either direction."""
     scene = read(deck(tmp_path))
     riser, cable, buoyed = scene["riser"], scene["line_types"]["cable"], scene["line_types"]["buoyed"]
     segments = [(each["line_type"], each["length"], each["elements"]) for each in riser["segments"]]

@@ -52,7 +52,7 @@ def test_options_that_pass_in_silence(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("word", [*chain(*names.LOST), "kbott", "whatever"])
 def test_all_other_options_are_remarks(word: str, tmp_path: Path) -> None:
-    """With line and value, and what they would have done; one without effect is none."""
+    """Remarks have line and value, and what they would have done; one without effect is none."""
     for case in CASES:
         data, remarks = imported(tmp_path, options=[*OPTIONS, f"17.5 {case(word)}"])
         assert data == imported(tmp_path)[0]
@@ -112,7 +112,7 @@ def headers() -> Iterator[tuple[str, str]]:
 
 @pytest.mark.parametrize(("usual", "words"), [*headers()])
 def test_each_section_by_each_of_its_headers(usual: str, words: str, tmp_path: Path) -> None:
-    """With more words around, in any case, also names of other sections."""
+    """Headers have more words around, in any case, also names of other sections."""
     want = imported(tmp_path)
     for case in CASES:
         for before, after in (("", ""), ("some ", ", 90 mm of all points"), ("solver ", " and lines")):

@@ -76,7 +76,7 @@ def test_a_rod_of_no_length_joins_two_lines(segments: str, whole: bool, tmp_path
 
 
 def test_a_free_rod_is_a_stiff_piece(tmp_path: Path) -> None:
-    """With its own weight and drag, between the lines at its ends; what its ends have is reported."""
+    """The rod has its own weight and drag, between the lines at its ends; what its ends have is reported."""
     rods = [*RODS, "1 bar Free -100 0 -50 -97 4 -50 5 -"]
     lines = [*LINES[:2], "1 cable 1 R1A 150 15 -", "2 cable R1B 2 106 11 -"]
     types = [*ROD_TYPES[:2], "bar 0.2 60 1.1 0.9 0.7 0"]
@@ -111,7 +111,7 @@ def test_lines_that_end_at_a_held_rod(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("whole", [False, True])
 def test_a_body_without_inertia_is_a_point(whole: bool, tmp_path: Path) -> None:
-    """With what is on it, and the force on it; its damping is reported."""
+    """The point has what is on the body, and the force on it; the body's damping is reported."""
     bodies = [*BODIES, "1 Free 6 2 -45 0 0 0 900 0 0 0.2 0.4|0.4|0.6 1"]
     points = [*HELD, "2 Body1 0 0 0 100 0.1 0.2 0"]
     loads = [*LOADS, "1 Body1 3e3|0|-500 10 0 G"]

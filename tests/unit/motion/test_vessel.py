@@ -69,7 +69,7 @@ def test_a_vessel_that_drives_too_far_is_reported(surge: float, count: int, tmp_
 
 @pytest.mark.parametrize("waves", [AIRY, JONSWAP])
 def test_a_buoy_follows_the_surface_at_its_reference(waves: Mapping, tmp_path: Path) -> None:
-    """From the first moment on, as it grows with the waves unless told otherwise."""
+    """The buoy follows from the first moment on, as it grows with the waves unless told otherwise."""
     floating = scene(tmp_path, table(*EVERYWHERE, heave=(1.0, 0.0)), waves=waves)
     assembly = begun(floating)
     for t in (0.3, 4.0, 9.1, 17.3):

@@ -48,7 +48,7 @@ def rao_of(folder: Path, text: str) -> Rao:
 
 
 def test_numbers_in_si_units(tmp_path: Path) -> None:
-    """From the lower end to the upper one; the file goes the other way."""
+    """The scene goes from the lower end to the upper one; the file goes the other way."""
     data = imported(tmp_path, data_text()).data
     (hose,) = data["line_types"].values()
     assert hose == {

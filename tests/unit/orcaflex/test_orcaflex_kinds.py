@@ -110,7 +110,7 @@ def test_the_depth_by_its_names(depth: str, tmp_path: Path) -> None:
 
 
 def test_a_taper_of_steel_keeps_its_mass(tmp_path: Path) -> None:
-    """From 0.34 m at end A to 0.30 m over 10 m, then even; Simpson's rule has its volume exactly."""
+    """The diameter goes from 0.34 m at end A to 0.30 m over 10 m, then even; Simpson's rule has its volume exactly."""
     text = changed(
         with_table("Linetypediameter", "Joint", "[[0, 0.34], [10, 0.30]]"), ("Category: General", PIPE),
         ("OD: 0.30", "OD: joint"), ('[8" hose, 110, 2]', '[8" hose, 30, 3]'), ('      - [8" hose, 40, 4]\n', ""),
@@ -188,7 +188,7 @@ def test_torsion_that_is_left_out_has_no_effect(tmp_path: Path) -> None:
 
 
 def test_coats_and_linings(tmp_path: Path) -> None:
-    """They have mass and take up room, and no stiffness."""
+    """Coats have mass and take up room, and no stiffness."""
     columns = "LayerThickness, LayerMaterialDensity"
     layers = with_table("Coatingsorlinings", "Coat", "[[0.01, 0.9], [0.04, 0.6]]", columns)
     coat = f"{PIPE}\n    CoatingThickness: Coat\n    LiningThickness: 0.005\n    LiningMaterialDensity: 1.1"

@@ -132,7 +132,9 @@ def test_ripples_where_the_force_ends_do_not_matter() -> None:
 
 @pytest.mark.parametrize("layer", [0.2, 0.5, 1.5])
 def test_moves_as_smoothly_as_the_forces(layer: float) -> None:
-    """By a fiftieth of an element at a time: where the peak, the end and what is deep pass from station to station."""
+    """The end moves by a fiftieth of an element at a time: where the peak, the end and what is deep pass from station
+    to station.
+    """
     arc, share = points("line", np.linspace(0.0, LENGTH, 161))
     moved = 0.005
     ends = 22.0 + moved * np.arange(60)
@@ -164,7 +166,9 @@ def test_unknown_clearance_beyond_and_no_force() -> None:
 
 
 def test_intervals_of_many_states_are_those_of_each() -> None:
-    """To the last bit: stretches that begin and end anywhere, held here and there, with gaps low and high."""
+    """Intervals are the same to the last bit: stretches that begin and end anywhere, held here and there, with gaps low
+    and high.
+    """
     rng = np.random.default_rng(8)
     arc, share = points("line", NODES[:60])
     wave = sum(rng.normal(size=(40, 1)) * np.sin(k * arc + rng.uniform(0.0, 6.0, (40, 1))) for k in (0.1, 0.4, 4.0))

@@ -159,7 +159,7 @@ def test_twenty_seeds(
 
 
 def test_what_the_page_does_with_results(hung: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its code, with the first scene's run in the place of that in results/first."""
+    """The page's code runs with the first scene's run in the place of that in results/first."""
     monkeypatch.chdir(ROOT)
     page = next(page for page in DOCS if page.name == "python.md")
     scenes, _, results = blocks(page, "python")

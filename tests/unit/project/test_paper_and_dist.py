@@ -23,7 +23,7 @@ def test_the_paper_has_a_source_for_each_reference() -> None:
 
 
 def test_the_paper_says_how_stress_cases_ended() -> None:
-    """Its other figures have marks, see test_demo_page.py."""
+    """The paper's other figures have marks, see test_demo_page.py."""
     wrong = block((ROOT / "docs/quality.md").read_text(encoding="utf-8"), "stress").splitlines()[2].split("|")[4]
     assert ("none ends quietly wrong" in " ".join(BODY.split())) == (wrong.strip() == "0")
 

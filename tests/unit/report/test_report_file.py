@@ -111,7 +111,7 @@ def test_the_command_says_what_is_wrong(
 
 
 def test_the_report_file_of_the_page_is_valid(tmp_path: Path) -> None:
-    """With folders of these names beside it; its table has every key."""
+    """The file is read with folders of these names beside it; the page's table has every key."""
     page = ROOT / "docs/report.md"
     (text,) = blocks(page, "yml")
     record(tmp_path / "results" / "base", duration=0.4)

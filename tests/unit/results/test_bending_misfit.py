@@ -45,7 +45,7 @@ def misfit_of(scene: Mapping) -> tuple[Misfit, float]:
 
 
 def too_long(misfit: Misfit, largest: float) -> bool:
-    """By the limits that warnings have."""
+    """Whether a misfit exceeds the limits of warnings."""
     return misfit.smooth > 0.1 * largest or misfit.steep > 0.2 * largest
 
 
@@ -77,7 +77,7 @@ def test_two_bending_stiffnesses_have_each_their_curvature() -> None:
 
 
 def test_a_misfit_counts_with_the_larger_stiffness() -> None:
-    """It bends about one of both axes: with the stiffness of that one, or with three times as much."""
+    """The line bends about one of both axes: with the stiffness of that one, or with three times as much."""
     start, steep = prescribed(0.0, 0.0, 0.0, rotation="fixed"), []
     for y, z in ((1.0e5, 3.0e5), (3.0e5, 1.0e5)):
         pipe: Mapping = {"EA": 1.0e9, "EI_y": y, "EI_z": z, "GJ": 1.0e5, "mass": 1.0, "submerged_weight": 1.0}
@@ -128,7 +128,7 @@ def test_a_straight_riser_bends_by_round_off_only() -> None:
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_misfits_of_many_states_are_those_of_each(dimension: int) -> None:
-    """To the last bit; and viscous forces, which bend nothing, are left out."""
+    """Misfits are the same to the last bit; and viscous forces, which bend nothing, are left out."""
     made, rows, undamped = sample(dimension), list[Any](), list[Any]()
     parts = [made.beam(), made.damping()]
     for n in range(4):

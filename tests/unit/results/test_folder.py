@@ -74,7 +74,7 @@ def test_the_scene_is_there_until_the_next_is(tmp_path: Path) -> None:
 
 
 def test_a_folder_of_an_earlier_version_is_known(tmp_path: Path) -> None:
-    """It has neither the seal nor the signature; an edit shows by its time."""
+    """An earlier folder has neither the seal nor the signature; an edit shows by its time."""
     record(tmp_path, duration=0.2)
     text = (tmp_path / "scene.yaml").read_text()
     (tmp_path / "scene.yaml").write_text(text.split("\n", 1)[1])

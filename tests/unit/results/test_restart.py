@@ -222,7 +222,7 @@ def test_a_run_whose_file_has_gone_is_refused(name: str, left_run: Path) -> None
 
 
 def test_xml_that_is_cut_off_is_refused(left_run: Path) -> None:
-    """Its last frame is begun and has no end: what followed would stand within it."""
+    """The file's last frame is begun and has no end: what followed would stand within it."""
     content = (left_run / "riser.xdmf").read_bytes()
     (left_run / "riser.xdmf").write_bytes(content[: content.rindex(b"<Grid Name") + 30])
     with pytest.raises(ResultsError, match=r"riser\.xdmf: lacks records"):
@@ -231,7 +231,7 @@ def test_xml_that_is_cut_off_is_refused(left_run: Path) -> None:
 
 @pytest.mark.parametrize("name", ["results.nc", "riser.vtkhdf"])
 def test_a_run_with_a_damaged_file_is_refused(name: str, left_run: Path) -> None:
-    """Its head is whole, so that it is taken for its writer's; what its groups hold can't be read."""
+    """The file's head is whole, so that it is taken for its writer's; what its groups hold can't be read."""
     content = (left_run / name).read_bytes()
     (left_run / name).write_bytes(content.replace(b"TREE", b"EERT"))
     with pytest.raises(ResultsError, match=telling(f"{name}:", "damaged", "begin anew", "--force")):

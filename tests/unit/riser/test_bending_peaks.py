@@ -103,7 +103,8 @@ def test_slopes_follow_from_the_shear_across_the_moment() -> None:
 
 @pytest.mark.parametrize("slope", [1e-6, 1e-20, 1e-200])
 def test_a_cubic_that_hardly_rises_and_falls_is_largest_at_its_higher_end(slope: float) -> None:
-    """By its values, 0 and 1, or 1 and 0, and such slopes; without a division by what cancels."""
+    """The larger end is found by the values, 0 and 1, or 1 and 0, and such slopes; without a division by what cancels.
+    """
     for values, end in (((0.0, 1.0), 1.0), ((1.0, 0.0), 0.0)):
         top, place = top_of_cubic(*np.array([[values[0]], [values[1]], [slope], [-slope]]))
         assert top == pytest.approx(1.0)

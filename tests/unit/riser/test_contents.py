@@ -40,7 +40,7 @@ def stretches(t: float, *slugs: SlugTrain, **more: Any) -> list[tuple[float, flo
 
 
 def test_a_slug_passes_through() -> None:
-    """It enters at the start, is cut off at the end, and is gone when all of it has left."""
+    """A slug enters at the start, is cut off at the end, and is gone when all of it has left."""
     slug = SlugTrain(300.0, 3.0, front=-1.0)
     plugs = {t: stretches(t, slug, speed=2.0) for t in (0.0, 0.5, 1.0, 4.0, 5.0, 6.0)}
     assert plugs == {

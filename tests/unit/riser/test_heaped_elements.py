@@ -97,7 +97,7 @@ def test_damping_has_its_exact_tangent_too(dimension: int) -> None:
 
 @dimensions
 def test_a_chord_of_no_length_is_a_spring(dimension: int) -> None:
-    """Its pull is r EA/L times the chord, whichever way that points, and its load that of a level element."""
+    """The element's pull is r EA/L times the chord, whichever way that points, and its load that of a level element."""
     beam = heaped(dimension, np.zeros(1))
     line, d, stiffness = beam.line, dimension, 1e-4 * 700.0
     at_rest = placed(np.zeros((2, line.ndof)))
@@ -127,7 +127,9 @@ def test_forces_across_a_chord_are_bounded(dimension: int) -> None:
 
 
 def test_the_share_of_the_bow_grows_smoothly() -> None:
-    """From nothing at half of the length to all of it at nine tenths, where the element is like any other."""
+    """The share grows from nothing at half of the length to all of it at nine tenths, where the element is like any
+    other.
+    """
     law = TensionOnly(*(np.full(1, value) for value in (1e-4, 0.1, 5.0)))
 
     def state(share: float) -> Heaped:
@@ -160,7 +162,7 @@ print(*(entry.data["dispatcher"].py_func.__name__ for _, entry in seen.buffer))
 
 
 def test_nothing_of_heaps_is_compiled_for_a_line_that_bends(tmp_path: Path) -> None:
-    """Its forces and its energy, from an empty cache."""
+    """The line's forces and energy are compiled, from an empty cache."""
     given = environment() | {"NUMBA_CACHE_DIR": str(tmp_path)}
     done = finished([sys.executable, "-c", COMPILED], ROOT, given)
     assert done.returncode == 0, done.stderr

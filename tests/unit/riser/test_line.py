@@ -154,7 +154,7 @@ def test_cantilever_reactions_balance_weight_and_tip_load(dimension: int) -> Non
 
 @both_dimensions
 def test_loads_that_grow_work_by_their_mean(dimension: int) -> None:
-    """From 0.2 to 0.8 of them while the tip goes 0.3 m along and 0.1 m up, and all of the bar half as far."""
+    """Loads grow from 0.2 to 0.8 while the tip goes 0.3 m along and 0.1 m up, and all of the bar half as far."""
     line, _ = bar(dimension, End(True, rotation_fixed=True), End(False))
     tip, spread = np.array([100.0, 0.0, -80.0]), np.array([0.0, 0.0, 5.0])
     loads = PointLoads(line, [AppliedLoad(lambda t: t, 12.0, tip), AppliedLoad(lambda t: t, distributed=spread)])
@@ -182,7 +182,7 @@ def test_small_deflections_give_textbook_section_forces() -> None:
 
 @both_dimensions
 def test_section_forces_of_many_states_are_those_of_each(dimension: int) -> None:
-    """To the last bit, so that files do not depend on how many steps are written together."""
+    """Forces are the same to the last bit, so that files do not depend on how many steps are written together."""
     made = sample(dimension)
     parts = [made.beam(), made.damping()]
     rows = []

@@ -47,7 +47,7 @@ def test_an_element_that_points_back_has_swung() -> None:
 
 
 def test_an_element_in_a_heap_may_fold_and_swing() -> None:
-    """It is shorter than the chord below which that does not count."""
+    """The element is shorter than the chord below which that does not count."""
     assert swung(0.0, 0.25, 0.0, 0.24, loose=1.9) == 1
     assert swung(0.0, 0.25, 0.0, 0.24, loose=2.1) == 3
     chord, tangent = np.array([[1.0, 0.0]]), np.array([[[-1.0, 0.0], [1.0, 0.0]]])

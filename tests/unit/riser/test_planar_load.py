@@ -50,7 +50,9 @@ def loaded() -> Loaded:
 
 
 def test_potential_is_that_of_a_cubic_by_the_angles_of_its_ends(loaded: Loaded) -> None:
-    """By vectors: each end's angle from the chord over its sine, times the load across the chord along its tangent."""
+    """The potential is checked by vectors: each end's angle from the chord over its sine, times the load across the
+    chord along its tangent.
+    """
     middle = np.random.default_rng(8).normal(size=(NE, 2))
     chord, *ends, length, load = loaded
     expected = -length * np.sum(load * middle, axis=1)

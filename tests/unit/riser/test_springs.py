@@ -26,7 +26,7 @@ def joint(angle: float, stiffness: float = K) -> Mapping:
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("upper", ["start", "end"])
 def test_a_rigid_bar_turns_to_the_neutral_angle(dimension: int, upper: str) -> None:
-    """From upright to 20 degrees, whichever end it hangs from; then a force balances k times the turn."""
+    """The bar turns from upright to 20 degrees, whichever end it hangs from; then a force balances k times the turn."""
     foot, top = [0.0, 0.0, 0.0], [0.0, 0.0, L]
     force = 400.0
     lateral = static("pushed", loads=[{"at": "end" if upper == "start" else "start", "force": [force, 0.0, 0.0]}])
@@ -49,7 +49,7 @@ def test_a_rigid_bar_turns_to_the_neutral_angle(dimension: int, upper: str) -> N
 
 
 def test_the_joint_of_a_hanging_riser() -> None:
-    """Its moment is its stiffness times the riser's angle less the neutral one."""
+    """The joint's moment is its stiffness times the riser's angle less the neutral one."""
     pipe: Mapping = {"EA": 1.0e8, "EI": 1.0e5, "submerged_weight": 300.0}
     scene = riser_scene(
         static(), pipe=pipe, length=60.0, elements=60, gravity=9.81,

@@ -41,7 +41,7 @@ def following(omega: Array = OMEGA) -> Array:
 
 
 def variables(values: Array, omega: Array = OMEGA) -> Variables:
-    """With complex numbers in two parts, and dimensions in another order than ours."""
+    """Variables with complex numbers in two parts, and dimensions in another order than ours."""
     dims = ("complex", "omega", "radiating_dof", "wave_direction")
     return {
         "complex": (("complex",), np.array(["re", "im"])), "omega": (("omega",), omega),
@@ -97,7 +97,7 @@ def changed(**other: Any) -> Variables:
 
 
 def test_other_forms(tmp_path: Path) -> None:
-    """By periods, from high to low frequency; names with a body's; complex numbers of the file's own."""
+    """Tables by periods, from high to low frequency; names with a body's; complex numbers of the file's own."""
     first = written(tmp_path, variables(following()))
     values = following()[:, ::-1].transpose(1, 0, 2)
     other = {

@@ -94,7 +94,7 @@ def test_height_and_peak(tmp_path: Path) -> None:
      ({"north_deg": 0.0}, "", 110.0)],
 )  # fmt: skip
 def test_directions(given: dict[str, Any], standard_name: str, toward: float, tmp_path: Path) -> None:
-    """From 70 degrees, clockwise from north, which is along y unless the scene says else."""
+    """Waves come from 70 degrees, clockwise from north, which is along y unless the scene says else."""
     efth = np.zeros((FREQ.size, 36))
     efth[:, 7] = density().sum(axis=1)
     directions = {"dir": (("dir",), np.arange(0.0, 360.0, 10.0)), "efth": (("freq", "dir"), efth)}

@@ -50,7 +50,7 @@ def test_it_is_linear_between_heights_and_constant_beyond_the_times() -> None:
 
 
 def test_its_rates_are_the_splines() -> None:
-    """Beside SciPy's, level at both ends, and by hand for two times."""
+    """Rates are compared with SciPy's, level at both ends, and by hand for two times."""
     time, value = np.array([0.0, 1.0, 2.5, 3.0, 7.0]), np.array([0.3, 1.0, -0.5, 0.2, 0.9])
     theirs = CubicSpline(time, value, bc_type="clamped")
     assert spline_rates(time, value) == pytest.approx(theirs(time, 1), abs=1e-13)

@@ -193,7 +193,7 @@ def test_above_the_surface_the_water_moves_as_at_it() -> None:
 
 
 def test_tangent_of_the_loads() -> None:
-    """By differences, on a riser that goes through the wave."""
+    """The tangent is checked by differences, on a riser that goes through the wave."""
     at = sample(3)
     wave = steady_wave("stream-function", 0.9, 3.0, G, 6.0)
     sea = Sea(sample_water.LEVEL, [steady_flow(wave, 0.3, 0.2, 5.2, 2.0, 0.0, 0.0)])

@@ -93,7 +93,7 @@ def new_wake() -> law.Wake:
 
 
 def advance(wake: law.Wake, t: float, v: Array, own: Array, a: Array, in_line: bool = False) -> None:
-    """To the end of an accepted step: velocity through the water, own velocity and acceleration, each (3,)."""
+    """Advance to the end of an accepted step: velocity through the water, own velocity and acceleration, each (3,)."""
     law.advance(wake, shedding(), in_line, t, law.phases_at(wake, t)[0, 0], 0, 0, v, own, a, TAU)
     wake.time[0] = t
 
@@ -276,7 +276,7 @@ def test_in_line_vortices_lock_to_twice_the_frequencies_by_default() -> None:
 
 
 def test_strakes_take_from_the_vortices_and_add_to_the_drag() -> None:
-    """By their cover: what is left of the force, and the mean of both coefficients of drag."""
+    """Strakes act by their cover: what is left of the force, and the mean of both coefficients of drag."""
     force = {"coefficient": 1.1, "in_line": {"coefficient": 0.3}}
     bare, straked = forces(vortex_force=force), forces(vortex_force=force, strakes=STRAKED)
     for name in (CROSS, IN_LINE):

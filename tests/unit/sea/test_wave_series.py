@@ -34,7 +34,7 @@ def sea(h: float, Tp: float, count: int, seed: int, gamma: float = 2.0, directio
 
 
 def points(h: float, far: float, seed: int) -> Array:
-    """From the bottom to above the crests, densest near the surface; some above it, some below the bottom."""
+    """Points from the bottom to above the crests, densest near the surface; some above it, some below the bottom."""
     draw = np.random.default_rng(seed)
     x = draw.uniform(-far, far, (400, 3))
     reach = min(h, 600.0)
@@ -59,7 +59,7 @@ def errors(motion: WaterMotion, expected: WaterMotion, size: WaterMotion) -> Arr
 @pytest.mark.parametrize("h", DEPTHS)
 @pytest.mark.parametrize("seed", [1, 2, 3, 4])
 def test_series_are_the_sums(seed: int, h: float, stretching: Stretching) -> None:
-    """To the round-off of the sums, and to the DEEPEST waves that are left out; in the ramp, too."""
+    """Series agree to the round-off of the sums, and to the DEEPEST waves that are left out; in the ramp, too."""
     draw = np.random.default_rng(10 * seed)
     Tp, gamma, count = draw.uniform(3.0, 16.0), draw.uniform(1.0, 7.0), (1, 20, 200, 400)[seed - 1]
     waves, x = sea(h, Tp, count, seed, gamma, draw.uniform(-3.0, 3.0)), points(h, 100.0, seed)

@@ -168,7 +168,7 @@ def test_von_mises_stress_of_uniaxial_and_shear_states() -> None:
 
 
 def test_many_points_that_flow_answer_as_a_few_do() -> None:
-    """Their moduli are compiled."""
+    """The moduli of many points are compiled."""
     depth, strain = np.linspace(0.0, 3.0, 300), 0.02 * np.random.default_rng(4).normal(size=(300, 6))
     whole = clay(depth).update(strain, clay(depth).start())
     assert (plastic_strain(clay(depth), whole.history) > 0.0).all()

@@ -138,7 +138,7 @@ def test_held_clay_relaxes_to_the_strength_of_slow_shear(clay: UndrainedClay) ->
 @pytest.mark.parametrize("remoulding", [None, REMOULDING], ids=["", "remoulded"])
 @each(rate=RATE)
 def test_the_tangent_is_that_of_the_stress(clay: UndrainedClay, remoulding: Remoulding | None) -> None:
-    """By differences; without the gain's derivative it is another one."""
+    """The tangent is checked by differences; without the gain's derivative it is another one."""
     law, rng = at(clay.model_copy(update={"remoulding": remoulding}), 40, 0.9), np.random.default_rng(3)
     history = law.start()
     for _ in range(4):

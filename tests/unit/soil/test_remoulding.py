@@ -75,7 +75,7 @@ def test_steady_shear_follows_the_strength_of_its_strain() -> None:
 
 
 def test_cycles_of_shear_follow_their_closed_form() -> None:
-    """From turn to turn ξ grows by 2 γa - su (δ + δ')/G: what is left of 2 γa after the elastic way back."""
+    """The strain ξ grows from turn to turn by 2 γa - su (δ + δ')/G: what is left of 2 γa after the elastic way back."""
     amplitude, n = 0.06, 300
     turns = amplitude * (-1.0) ** np.arange(12)
     path = np.concatenate([np.linspace(a, b, n + 1)[1:] for a, b in zip([0.0, *turns], turns, strict=False)])

@@ -38,7 +38,7 @@ def asked_soil(forgetful: bool = False) -> tuple[Soil, Asked]:
 
 
 def again(state: State) -> State:
-    """Another state with the same increments."""
+    """A state again, with the same increments."""
     return State(state.t + 1.0, state.u.copy(), state.v, state.a)
 
 
@@ -67,7 +67,7 @@ def test_other_increments_are_answered_anew_in_an_array_that_was_seen_too() -> N
 
 
 def test_after_a_step_the_same_increments_lead_on() -> None:
-    """From the history that it has left: as soil does that was asked for nothing between."""
+    """The step goes on from the last history: as soil does that was asked for nothing between."""
     (soil, law), other = asked_soil(), asked_soil()[0]
     state = moved(soil, 5e-3)
     accept(soil, state)

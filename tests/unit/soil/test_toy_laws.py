@@ -109,7 +109,7 @@ def test_run_on_a_new_soil_law() -> None:
 
 @pytest.mark.usefixtures("hardening")
 def test_run_on_hardening_soil() -> None:
-    """It yields below the riser, the less the more it hardens; without, it is the clay of the library."""
+    """Soil yields below the riser, the less the more it hardens; without, it is the clay of the library."""
     law = {"E": 1.8e5, "nu": 0.49, "limit": np.sqrt(3.0) * 600.0}
     clay = {"kind": "von-mises", "su": 600.0, "E_over_su": 300.0, "nu": 0.49}
     soft, hard = (at_rest(on_soil({"kind": "toy", **law, "H": H})) for H in (1.0e-3, 1.0e5))
@@ -146,7 +146,7 @@ def test_hardening_soil_dissipates_what_it_does_not_store(kind: str, unit_weight
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_tangent_of_hardening_soil(kind: str) -> None:
-    """Beyond its limit, after a step."""
+    """The tangent beyond the law's limit, after a step."""
     soil = Soil(distorted(small_block(kind)), HARDENING.at_points, level=0.0, unit_weight=5.0e3)
     soil.commit(moved(soil, 2e-3, seed=1))
     state, direction = moved(soil, 5e-3, seed=2), moved(soil, 1.0, seed=3).u
@@ -183,7 +183,7 @@ def lying() -> Mapping:
 
 @pytest.mark.usefixtures("plastic_spring")
 def test_run_on_a_new_seabed_law() -> None:
-    """It lies level, keeps what has given way, and stores W^2/(2 k) + h z_p^2/2 per length."""
+    """The riser lies level, the bed keeps what has given way, and stores W^2/(2 k) + h z_p^2/2 per length."""
     assert isinstance(scene_from_mapping(lying()).seabed, HystereticSeabed)
     assembly = at_rest(lying())
     np.testing.assert_allclose(shape(assembly)[:, 2], shape(assembly)[0, 2], atol=1e-7)

@@ -77,7 +77,7 @@ B = RANDOM.normal(size=len(K))
 
 
 def stiffened(factor: float, nodes: int) -> Array:
-    """With stiffer springs to the ground at some nodes, as contact makes them."""
+    """The matrix with stiffer springs to the ground at some nodes, as contact makes them."""
     out = K.copy()
     out[np.arange(nodes), np.arange(nodes)] *= factor
     return out

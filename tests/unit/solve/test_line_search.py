@@ -80,7 +80,7 @@ def test_a_step_that_leads_to_nowhere_is_shortened() -> None:
 
 
 def test_a_step_that_climbs_is_taken_backwards() -> None:
-    """To the least energy there, or all of it where that lies further away."""
+    """The step goes back to the least energy there, or all of it where that lies further away."""
     assert step_length(1.0, lambda a: 1.0 + 10.0 * a) == pytest.approx(-0.1, abs=0.025)
     assert step_length(1.0, lambda a: 1.0 + 0.2 * a) == -1.0
 
@@ -120,7 +120,9 @@ def test_newton_comes_back_from_beyond_the_limit_with_it_alone(line_search: bool
 
 
 def test_forces_of_a_full_step_are_evaluated_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """By the line search, which tries it, and not again by Newton's method: a linear chain takes one step and two."""
+    """The line search evaluates them, which tries it, and not again by Newton's method: a linear chain takes one step
+    and two.
+    """
     chain = Chain(np.arange(4.0), prescribed=True)
     system, z = System(MPI.COMM_SELF, Model([chain], [Springs(chain, 1.0, 20.0, weight=2.0)]), Timer.new()), np.zeros(4)
     evaluated, forces = list[State](), system.forces

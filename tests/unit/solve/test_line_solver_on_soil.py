@@ -122,7 +122,7 @@ def test_steps_that_it_cannot_solve_are_left_to_newton(monkeypatch: pytest.Monke
 
 
 def test_what_is_watched_follows_the_riser(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With a narrow range around the pipe and room for few points steps are begun anew several times."""
+    """A narrow range is watched around the pipe and room for few points steps are begun anew several times."""
     begun = list[SoilBorder]()
     usual = SoilBorder._prescribe_anew
 
@@ -204,7 +204,7 @@ def test_the_tangent_is_the_slope_of_the_residual(case: str) -> None:
 
 
 def test_elastic_soil_adheres_without_a_limit() -> None:
-    """Beside a seabed of clay, whose strength adhesion is a share of: friction on the soil has kernels."""
+    """Soil lies beside a seabed of clay, whose strength adhesion is a share of: friction on the soil has kernels."""
     mapping = scene("with friction", "compiled")
     mapping["contact"]["friction"]["adhesion"] = 0.5
     mapping["seabed"] = {"kind": "hysteretic", "law": {"kind": "randolph-quiggin", "su": 2.0e3}}

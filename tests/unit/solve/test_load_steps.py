@@ -87,7 +87,7 @@ def test_relaxation_that_leaves_another_pattern_of_contact_does_no_harm(monkeypa
 
 
 def test_relaxation_that_fails_on_its_way_leaves_clay_and_riser_as_they_were(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It has pressed the pipe into clay by a tenth of its diameter when it gives up."""
+    """Relaxation has pressed the pipe into clay by a tenth of its diameter when it gives up."""
     scene = slice_of_soil(2)
     scene["soil"]["law"] = CLAY
     assembly, saved, usual = built(scene), list[Saved](), TimeStepper.advance

@@ -41,7 +41,7 @@ def test_soil_that_is_touched_is_solved_with_the_riser() -> None:
 
 
 def test_soil_out_of_balance_is_solved_with_the_riser(above: System) -> None:
-    """By more than what is negligible; the riser may be it."""
+    """Soil is out of balance by more than what is negligible; the riser may be it."""
     solver, f = RiserAboveSoil(above), above.numbering.zeros()
     f[0] = 1e3
     assert solver.suits(f, 0.0)

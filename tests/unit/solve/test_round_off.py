@@ -38,7 +38,9 @@ K, HIGH = 1e6, 1e6  # N/m, m: an eps of the height is 1e-4 N in a spring, where 
 
 
 class WrongSprings(Springs):
-    """Their tangent is thirty times as stiff as their forces: Newton's method creeps by a thirtieth an iteration."""
+    """Springs whose tangent is thirty times as stiff as their forces: Newton's method creeps by a thirtieth an
+    iteration.
+    """
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         super().tangent(state, weights, values)
@@ -70,7 +72,7 @@ def test_a_residual_that_stays_for_a_wrong_tangent_is_no_round_off() -> None:
 
 
 def test_a_bar_that_has_turned_many_times_comes_to_rest_without_a_cut_step() -> None:
-    """Its angle of 126 rad is known to 1.4e-14 rad, and 6 EI/h^2 of that is 1e-8 N at either end of each element:
+    """The bar's angle of 126 rad is known to 1.4e-14 rad, and 6 EI/h^2 of that is 1e-8 N at either end of each element:
     more than counts as none when nothing moves any more.
     """
     assembly, watched = built(turned_bar(20)), list[AcceptedStep]()

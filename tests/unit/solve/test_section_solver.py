@@ -142,7 +142,7 @@ def test_a_singular_matrix_is_reported(row: int) -> None:
 
 
 def test_a_section_without_a_sound_pivot_is_reported_and_others_after_it_are_solved() -> None:
-    """It has an inverse, but rows would have to be exchanged."""
+    """The section has an inverse, but rows would have to be exchanged."""
     entries = matrix()
     solver, spoilt = Solver(entries), entries.copy()
     spoilt[RISER, RISER] = 0.0

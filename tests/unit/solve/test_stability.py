@@ -102,7 +102,7 @@ def test_a_line_laid_out_straight_sags_and_does_not_fold(tmp_path: Path) -> None
 
 
 def test_a_sagging_line_does_not_wind_up_its_end_spring(tmp_path: Path) -> None:
-    """From a straight line Newton's method comes back wound up by thousands of turns, which a spring would count."""
+    """Newton's method from a straight line comes back wound up by thousands of turns, which a spring would count."""
     scene = {
         "line_types": {"hose": PIPE},
         "riser": {

@@ -23,7 +23,7 @@ MOVED = 0.3  # m
 
 
 class MovedChain(Chain):
-    """Its first mass is moved."""
+    """A chain whose first mass is moved."""
 
     def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
         super().prescribe(t, u, v, a)

@@ -118,7 +118,8 @@ def test_workers_tell_what_they_lack(tmp_path: Path) -> None:
 
 
 def test_a_run_ends_with_its_worker(tmp_path: Path) -> None:
-    """With the thread that began it; and one whose worker had ended before it could ask for that, by itself."""
+    """A run ends with the thread that began it; and one whose worker had ended before it could ask for that, by itself.
+    """
     module = "from riser_soil.variants.run_process import die_with\n"
     begun: list[int] = []
 
