@@ -6,7 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from typing import NamedTuple
 
-from riser_soil.contact.touchdown import ContactInterval, PointsAlong, contact_intervals, touchdown
+from riser_soil.contact.touchdown import PointsAlong
 from riser_soil.core.arrays import Array, views
 from riser_soil.core.by_type import bound_by_type
 from riser_soil.core.part import Forces, State, Traits, Weights
@@ -20,8 +20,7 @@ class RiserContact(LinePart, ABC):
     """Normal contact of the riser, nn nodes, with a ground, by a law of the force per length; friction is a part of its
     own.
 
-    A rank that is not active tells of a riser that touches nothing: zeros, nan for the touchdown point, no contact
-    intervals.
+    On a rank that is not active the riser touches nothing: all results are zeros.
     """
 
     line: Line
@@ -77,17 +76,6 @@ class RiserContact(LinePart, ABC):
     @abstractmethod
     def predict(self, guess: State) -> Array:
         """Increments (all local dofs) of a first guess of a step in which the riser lands, see `along_step`."""
-
-    def touchdown_arc(self, state: State) -> float:
-        """Arc length [m] of the touchdown point; nan where nothing touches. See `touchdown`."""
-        return touchdown(*self.along, *self.contact_along_line(state)) if self.active else float("nan")
-
-    def contact_intervals(self, state: State) -> list[ContactInterval]:
-        """Intervals of contact along the riser, from its start on."""
-        if not self.active:
-            return []
-        clearance, force = self.contact_along_line(state)
-        return contact_intervals(*self.along, clearance[None], force[None])[0]
 
 
 class ContactResults(NamedTuple):

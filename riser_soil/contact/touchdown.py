@@ -29,6 +29,7 @@ contact. All weights and means are continuous in the forces, and so is d: a stat
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -50,14 +51,14 @@ class PointsAlong(NamedTuple):
 
 
 class ContactInterval(NamedTuple):
-    """Contact from one touchdown point to the next: their arc lengths [m], that of the line's end where it touches, and
-    the first and last of the points that touch.
+    """Contact from one touchdown point to the next: their arc lengths [m]. from_start, to_end: whether it begins with
+    the line's start, or ends with its end, where the line does not come down but lies.
     """
 
     start: float
     end: float
-    first: int
-    last: int
+    from_start: bool
+    to_end: bool
 
 
 class Stretches(NamedTuple):
@@ -68,17 +69,33 @@ class Stretches(NamedTuple):
     last: IntArray
 
 
-def touchdown(arc: Array, share: Array, clearance: Array, force: Array) -> float:
-    """Arc length [m] of the touchdown point towards the riser's end; nan where nothing touches.
+def touchdown_arc(intervals: Sequence[ContactInterval]) -> float:
+    """Arc length [m] of the touchdown point towards the riser's end, by its contact from the start on; nan without any.
 
-    Where the riser's end itself touches, but not all of the riser, it is the touchdown point next to the start.
-    Arguments as in `contact_intervals`.
+    Where the riser's end itself touches, but not all of the riser, the last interval begins with the touchdown point.
     """
-    (found,) = contact_intervals(arc, share, clearance[None], force[None])
-    if not found:
+    if not intervals:
         return float("nan")
-    last, n = found[-1], len(arc)
-    return last.start if last.last == n - 1 and last.first > 0 else last.end
+    last = intervals[-1]
+    return last.start if last.to_end and not last.from_start else last.end
+
+
+def touchdown_points(intervals: Sequence[ContactInterval]) -> int:
+    """Number of places where the riser comes down or leaves the ground; its ends do not count."""
+    return sum((not each.from_start) + (not each.to_end) for each in intervals)
+
+
+def merged(intervals: Sequence[ContactInterval], near: float) -> list[ContactInterval]:
+    """Contact with several grounds by the arc length, as one where a ground ends and another begins within `near` [m].
+    """
+    found: list[ContactInterval] = []
+    for this in sorted(intervals):
+        if found and this.start - found[-1].end <= near:
+            last = found[-1]
+            found[-1] = last._replace(end=max(last.end, this.end), to_end=last.to_end or this.to_end)
+        else:
+            found.append(this)
+    return found
 
 
 def contact_intervals(arc: Array, share: Array, clearance: Array, force: Array) -> list[list[ContactInterval]]:
@@ -90,16 +107,17 @@ def contact_intervals(arc: Array, share: Array, clearance: Array, force: Array) 
     a stiff bed lifts the riser off a little.
     """
     found, whole = touching(clearance, force), float(np.cumsum(share)[-1])
+    from_start, to_end = found.first == 0, found.last == arc.size - 1
     start, end = np.zeros(found.row.size), np.full(found.row.size, whole)
-    if (at := np.flatnonzero(found.last < arc.size - 1)).size:
+    if (at := np.flatnonzero(~to_end)).size:
         own = Stretches(*(each[at] for each in found))
         end[at] = _leaving(arc, share, clearance, force, own)
-    if (at := np.flatnonzero(found.first > 0)).size:
+    if (at := np.flatnonzero(~from_start)).size:
         own = Stretches(found.row[at], *(arc.size - 1 - each[at] for each in (found.last, found.first)))
         backwards = (whole - arc[::-1], share[::-1], clearance[:, ::-1], force[:, ::-1])
         start[at] = whole - _leaving(*backwards, own)
     intervals: list[list[ContactInterval]] = [[] for _ in clearance]
-    for row, *ends in zip(as_list(found.row), *map(as_list, (start, end, found.first, found.last)), strict=True):
+    for row, *ends in zip(as_list(found.row), *map(as_list, (start, end, from_start, to_end)), strict=True):
         intervals[row].append(ContactInterval(*ends))
     return intervals
 

@@ -6,13 +6,14 @@ steps together, as each of its operations takes an interpreter longer than the n
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from riser_soil.assembly import LineAssembly
-from riser_soil.contact.touchdown import ContactInterval, contact_intervals
+from riser_soil.contact.touchdown import contact_intervals, merged, touchdown_arc, touchdown_points
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
@@ -21,7 +22,6 @@ from riser_soil.results.bending_misfit import bending_misfits
 from riser_soil.results.riser_record import code_values, riser_values
 from riser_soil.results.settlement_trough import sections_of
 from riser_soil.riser.hermite import axis_at
-from riser_soil.riser.line import Line
 from riser_soil.riser.section_forces import SectionForces
 from riser_soil.solve.time_stepper import TimeStepper
 
@@ -139,10 +139,10 @@ class InstantReader:
         contacts = zip(self._riser.contacts, found, strict=True)
         of_each = [contact_intervals(*contact.along, of.clearance, of.force) for contact, of in contacts]
         near = float(line.length.max())
-        grounds = [joined([each for own in at_once for each in own], near) for at_once in zip(*of_each, strict=True)]
-        arc = np.array([touchdown_arc(intervals, line) for intervals in grounds])
-        ends = np.array([touchdown_points(intervals, line) for intervals in grounds])
-        return arc, axis_at(line.arc, inside.position, inside.tangent, arc)[0], ends
+        at_instants = [merged([*itertools.chain(*grounds)], near) for grounds in zip(*of_each, strict=True)]
+        arc = np.array([touchdown_arc(intervals) for intervals in at_instants])
+        count_of_points = np.array([touchdown_points(intervals) for intervals in at_instants])
+        return arc, axis_at(line.arc, inside.position, inside.tangent, arc)[0], count_of_points
 
     def _deepest(self, depths: Sequence[Array]) -> Array | None:
         return np.max(depths, axis=0) if depths else None
@@ -178,27 +178,3 @@ class InstantReader:
     def _owners(self) -> dict[str, Stateful]:
         found: dict[str, Stateful] = {} if self._sections is None else {"sections": self._sections}
         return found if self._checks is None else found | {"code checks": self._checks}
-
-
-def touchdown_points(intervals: Sequence[ContactInterval], line: Line) -> int:
-    """Number of places where the riser comes down or leaves the ground; its ends do not count."""
-    return sum(int(s.start > line.arc[0]) + int(s.end < line.arc[-1]) for s in intervals)
-
-
-def joined(intervals: Sequence[ContactInterval], near: float) -> list[ContactInterval]:
-    """The intervals in order of the arc length, merged where one ground ends and the next begins within `near` [m]."""
-    found: list[ContactInterval] = []
-    for this in sorted(intervals):
-        if found and this.start - found[-1].end <= near:
-            found[-1] = found[-1]._replace(end=max(found[-1].end, this.end))
-        else:
-            found.append(this)
-    return found
-
-
-def touchdown_arc(intervals: Sequence[ContactInterval], line: Line) -> float:
-    """Arc length of the touchdown point [m], as `contact.touchdown` gives it for one ground; nan without contact."""
-    if not intervals:
-        return float("nan")
-    last = intervals[-1]
-    return last.start if last.end >= line.arc[-1] and last.start > line.arc[0] else last.end

@@ -25,6 +25,7 @@ from riser_soil.core.system import Timer
 from riser_soil.results.riser_record import riser_record
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
+from tests.support.contact_along import touchdown_at
 from tests.support.driven_stage import Watcher, built
 from tests.support.scenes import prescribed, riser_scene, static
 
@@ -71,7 +72,7 @@ def lying(k: float, length: float, size: float, method: str, *loads: Any, tensio
         assert assembly.riser.seabed is not None
         tangent = line.trial(stepper.now).turn.tangent
         slope = np.append(tangent[:, 0, 1] / tangent[:, 0, 0], tangent[-1, 1, 1] / tangent[-1, 1, 0])
-        touchdown = assembly.riser.seabed.touchdown_arc(stepper.now)
+        touchdown = touchdown_at(assembly.riser.seabed, stepper.now)
         results.append(BedShape(line.arc, riser.position[:, 2], slope, riser.bending_moment, touchdown))
 
     run_stage(assembly, assembly.scene.stages[0], State.at_rest(0.0, assembly.size), Watcher(watch), Timer.new())

@@ -16,6 +16,7 @@ from riser_soil.core.system import Timer
 from riser_soil.riser import stations
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
+from tests.support.contact_along import touchdown_at
 from tests.support.driven_stage import Watcher, built
 from tests.support.scenes import Mapping, prescribed, riser_scene, static
 from tests.support.touchdown_reference import equivalent_point
@@ -72,7 +73,7 @@ def laid(seabed: Mapping, size: float, *stages: Mapping, **more: Mapping) -> lis
         penetration = (-clearance - law.start).reshape(seabed_contact.share.shape)
         first = law.update(penetration, law.initial_history(penetration.shape)).force
         at = (x.ravel() for x in (arc, seabed_contact.share, force, first))
-        states.append(Laid(seabed_contact.touchdown_arc(stepper.now), *at))
+        states.append(Laid(touchdown_at(seabed_contact, stepper.now), *at))
 
     before = State.at_rest(0.0, assembly.size)
     for stage in assembly.scene.stages:

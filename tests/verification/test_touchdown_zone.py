@@ -9,10 +9,9 @@ import h5py
 import numpy as np
 import pytest
 
-from riser_soil.contact.touchdown import ContactInterval
+from riser_soil.contact.touchdown import ContactInterval, merged, touchdown_arc, touchdown_points
 from riser_soil.errors import ResultsError
 from riser_soil.results import Run
-from riser_soil.results.instants import joined
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
 from tests.support.scenes import LAY, Mapping, dynamic, prescribed, riser_scene, static, touchdown
@@ -198,8 +197,33 @@ def tell_of_the_trough(run: Run) -> None:
 
 
 def test_ground_after_ground_is_one_stretch() -> None:
-    on_seabed, on_soil = ContactInterval(0.0, 10.0, 0, 9), ContactInterval(10.4, 20.0, 0, 5)
-    far = ContactInterval(25.0, 30.0, 8, 9)
-    assert [s[:2] for s in joined([far, on_soil, on_seabed], near=0.5)] == [(0.0, 20.0), (25.0, 30.0)]
-    assert len(joined([on_seabed, on_soil], near=0.3)) == 2
-    assert joined([], near=1.0) == []
+    on_seabed, on_soil = ContactInterval(0.0, 10.0, True, False), ContactInterval(10.4, 20.0, False, False)
+    far = ContactInterval(25.0, 30.0, False, True)
+    one, other = merged([far, on_soil, on_seabed], near=0.5)
+    assert one == (0.0, 20.0, True, False)
+    assert other == far
+    assert (touchdown_arc([one, other]), touchdown_points([one, other])) == (25.0, 2)
+    (whole,) = merged([far, on_soil, on_seabed], near=5.0)
+    assert whole == (0.0, 30.0, True, True)
+    assert (touchdown_arc([whole]), touchdown_points([whole])) == (30.0, 0)
+    assert len(merged([on_seabed, on_soil], near=0.3)) == 2
+    assert merged([], near=1.0) == []
+
+
+@pytest.mark.parametrize("elements", [61, 62, 66])
+def test_a_line_from_the_floater_down_comes_down_at_one_place_whatever_its_mesh(elements: int, tmp_path: Path) -> None:
+    """It lies to its end, whose arc length sums of elements and of stations' shares give with different round-off."""
+    scene = riser_scene(
+        static("lay"),
+        pipe=PIPE,
+        length=41.7,
+        elements=elements,
+        start=prescribed(0.0, 0.0, 12.0),
+        end=prescribed(36.0, 0.0, RADIUS),
+        seabed={"kind": "spring", "stiffness": 1.0e5},
+        gravity=9.81,
+    )
+    run(scene_from_mapping(scene), tmp_path)
+    final = Run(tmp_path).summary["stages"][0]["final"]
+    assert final["touchdown_points"] == 1
+    assert 15.0 < final["touchdown_arc"] < 30.0

@@ -22,6 +22,7 @@ from riser_soil.results.riser_record import riser_record
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 from riser_soil.stages import run_stage
+from tests.support.contact_along import touchdown_at
 from tests.support.driven_stage import Watcher
 from tests.support.scenes import LAY, Mapping, dynamic, prescribed, riser_scene, static, touchdown
 from tests.support.scenes import heave as heaved
@@ -81,7 +82,7 @@ def reported_of(scene: Mapping, s: float) -> Array:
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
         riser, contact = riser_record(assembly.riser, stepper), assembly.contacts[0]
         forces = [riser.start_force[0] / s**3, riser.effective_tension[-1] / s**3, riser.bending_moment.max() / s**4]
-        places = [contact.touchdown_arc(stepper.now) / s, float(riser.position[:, 2].min()) / s]
+        places = [touchdown_at(contact, stepper.now) / s, float(riser.position[:, 2].min()) / s]
         time = 0.0 if len(rows) == 0 else step.t / s**0.5
         rows.append([time, *forces, *places, step.solution.iterations])
 

@@ -13,6 +13,7 @@ from riser_soil.riser.line import End, Line
 from riser_soil.seabed.grounds import Ground, Plane
 from riser_soil.seabed.height_field import HeightField, Profile
 from riser_soil.seabed.randolph_quiggin import RandolphQuiggin
+from tests.support.contact_along import intervals_at, touchdown_at
 from tests.support.covered_ground import beyond
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
@@ -97,8 +98,10 @@ def test_sum_and_nodal_forces_of_a_line_pressed_evenly(dimension: int, rule: str
     assert part.force_per_length(state) == pytest.approx(np.full(5, 200.0))
     assert part.force_on_riser(state) == pytest.approx([0.0, 0.0, 800.0])
     assert part.max_penetration(state) == pytest.approx(0.2)
-    assert part.touchdown_arc(state) == pytest.approx(4.0)
-    assert [stretch[:2] for stretch in part.contact_intervals(state)] == [pytest.approx((0.0, 4.0))]
+    assert touchdown_at(part, state) == pytest.approx(4.0)
+    ((start, end, *whole),) = intervals_at(part, state)
+    assert (start, end) == pytest.approx((0.0, 4.0))
+    assert all(whole)
 
 
 @both_dimensions

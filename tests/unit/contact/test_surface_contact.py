@@ -11,6 +11,7 @@ import pytest
 from riser_soil.contact.law import Penalty
 from riser_soil.core.arrays import Array
 from riser_soil.results.settlement_trough import TroughSections
+from tests.support.contact_along import touchdown_at
 from tests.support.differences import slope as differences
 from tests.support.pipe_on_surface import RADIUS, STIFFNESS, PipeOnSurface, pipe_on_surface, sagging, shaken
 from tests.support.soil_tops import top
@@ -150,7 +151,7 @@ def test_nothing_touches_above_the_soil() -> None:
     assert made.contact.work(state, state).dissipated == 0.0
     assert made.contact.max_penetration(state) == 0.0
     assert not made.contact.force_on_soil_per_length(state).any()
-    assert np.isnan(made.contact.touchdown_arc(state))
+    assert np.isnan(touchdown_at(made.contact, state))
 
 
 @KINDS

@@ -23,6 +23,7 @@ from riser_soil.riser.shapes import Curve
 from riser_soil.riser.stations import ENDS
 from riser_soil.seabed.grounds import Plane
 from riser_soil.soil.surface import SoilTop
+from tests.support.contact_along import intervals_at, touchdown_at
 from tests.support.soil_tops import top
 
 LAW = Penalty(stiffness=2.0e5, smoothing=1e-3)
@@ -268,8 +269,6 @@ def assert_touches_nothing(contact: RiserContact) -> None:
     assert all(np.array_equal(force(state), np.zeros(4)) for force in along)
     np.testing.assert_array_equal(contact.force_on_riser(state), np.zeros(3))
     assert contact.max_penetration(state) == 0.0
-    assert np.isnan(contact.touchdown_arc(state))
-    assert contact.contact_intervals(state) == []
     assert contact.predict(state) is state.u
 
 
@@ -281,11 +280,12 @@ def test_contacts_of_all_grounds_tell_the_same() -> None:
     players: tuple[RiserContact, ...] = (case.contact, seabed)
     for player in players:
         assert isinstance(player, RiserContact)
-    alike = "force_per_length", "penetration", "depth", "max_penetration", "force_on_riser", "touchdown_arc", "predict"
+    alike = "force_per_length", "penetration", "depth", "max_penetration", "force_on_riser", "predict"
     for name in alike:
         on_soil, on_seabed = (np.asarray(getattr(player, name)(case.state())) for player in players)
         np.testing.assert_allclose(on_soil, on_seabed, rtol=1e-9, atol=1e-9, err_msg=name)
-    assert [[s[:2] for s in player.contact_intervals(case.state())] for player in players] == 2 * [[(0.0, 1.5)]]
+    intervals = [intervals_at(player, case.state()) for player in players]
+    assert intervals == 2 * [[(0.0, 1.5, True, True)]]
     elsewhere = riser_at(case.riser.x, active=False)
     assert_touches_nothing(SeabedContact(elsewhere, np.full(3, RADIUS), Plane.level(0.0), LAW))
 
@@ -358,10 +358,11 @@ def test_touchdown_ends_an_even_contact_of_the_same_force() -> None:
     """
     depth = np.array([0.01, 0.01, 0.01, 0.003, -0.005, -0.2])
     case, turned = level_case(depth, top("quad4")), level_case(depth[::-1], top("quad4"))
-    assert case.contact.touchdown_arc(case.state()) == pytest.approx(1.3)
-    assert turned.contact.touchdown_arc(turned.state()) == pytest.approx(2.5 - 1.3)
-    assert np.isnan(level_case(np.full(3, -0.1), top("quad4")).contact.touchdown_arc(case.state()))
-    assert level_case(np.full(3, 0.1), top("quad4")).contact.touchdown_arc(case.state()) == pytest.approx(1.0)
+    assert touchdown_at(case.contact, case.state()) == pytest.approx(1.3)
+    assert touchdown_at(turned.contact, turned.state()) == pytest.approx(2.5 - 1.3)
+    above, below = (level_case(np.full(3, depth), top("quad4")) for depth in (-0.1, 0.1))
+    assert np.isnan(touchdown_at(above.contact, above.state()))
+    assert touchdown_at(below.contact, below.state()) == pytest.approx(1.0)
 
 
 def test_committed_settlement_counts_and_memory_is_dropped() -> None:
@@ -429,4 +430,4 @@ def test_riser_far_above_touches_nothing() -> None:
     assert {key: block.shape[0] for key, block in case.contact.blocks().items()} == {"contact.soil": 0}
     assert not case.outgrows(np.zeros(case.size))
     assert case.contact.max_penetration(case.state()) == 0.0
-    assert np.isnan(case.contact.touchdown_arc(case.state()))
+    assert np.isnan(touchdown_at(case.contact, case.state()))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.contact.touchdown import ContactInterval, contact_intervals, touchdown
+from riser_soil.contact.touchdown import ContactInterval, contact_intervals, touchdown_arc
 from riser_soil.core.arrays import Array
 from riser_soil.riser import stations
 
@@ -38,6 +38,11 @@ def intervals(arc: Array, share: Array, clearance: Array, force: Array) -> list[
     """Intervals of contact in one state."""
     (interval,) = contact_intervals(arc, share, clearance[None], force[None])
     return interval
+
+
+def touchdown(arc: Array, share: Array, clearance: Array, force: Array) -> float:
+    """Of one state."""
+    return touchdown_arc(intervals(arc, share, clearance, force))
 
 
 @both_rules
