@@ -51,7 +51,8 @@ class Record(Mapping[str, Array]):
     nodes too, each with its place `…_arc` [m]; tightest_radius [m]: where the bend utilisation is largest;
     start_tangent, end_tangent (3,): unit tangents in the direction of growing arc length; most_used_stress (nn,): von
     Mises' stress on the side with the larger utilisation [Pa]; code_largest, code_place (m,): the largest utilisation
-    of each code check, and its arc length [m].
+    of each code check, and its arc length [m]; smooth_misfit, steep_misfit (ne,): of the elements' bending, see
+    `results.bending_misfit` [N m].
 
     A quantity that is not known, or not wanted, is not there. Each may be had as an attribute, too: `record.position`.
     Of one instant the arrays have no axis for the instants.
@@ -82,10 +83,6 @@ class Record(Mapping[str, Array]):
     def at(self, index: Any) -> Record:
         """The record of the instants, of many, that an index of their axis selects; one, by its number, without it."""
         return Record(self.arc, {name: value[index] for name, value in self.items()})
-
-    def with_values(self, **values: Array | None) -> Record:
-        """With other values, or further ones; None takes one out."""
-        return Record(self.arc, {**self, **values})
 
 
 Records = Mapping[str, Record]

@@ -20,17 +20,16 @@ from riser_soil.core.arrays import Array
 from riser_soil.riser.components import across, cross, dot, size
 from riser_soil.riser.directors import PlanarFrames
 from riser_soil.riser.line import Line
-from riser_soil.riser.section_forces import ElementEnds, SectionForces
+from riser_soil.riser.section_forces import ElementEnds
 from riser_soil.riser.sections import Elements
 
 
-def bending_misfits(line: Line, elements: Elements, sections: SectionForces) -> tuple[Array, Array]:
+def bending_misfits(line: Line, elements: Elements, ends: ElementEnds) -> tuple[Array, Array]:
     """Difference [N m] between each element's bending moment by its end rotations and by its end moments.
 
-    Of the section forces' states, each (..., ne): by the formula with shear, and by the trapezoidal rule, which is 0 in
-    elements at ends where the moment sets in.
+    Two of them, each (..., ne), at the states of the section forces at the ends: by the formula with shear, and by the
+    trapezoidal rule, which is 0 in elements at ends where the moment sets in.
     """
-    ends = sections.ends
     bending, shear = across(ends.moment, ends.tangent), cross(ends.force, ends.tangent)
     k, slope = (_over_stiffness(vectors, elements, ends.frames) for vectors in (bending, shear))
     L = line.length

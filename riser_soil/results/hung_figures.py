@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.part import State
@@ -66,10 +64,5 @@ def hung_reader(assembly: Assembly) -> HungReader | None:
 
 
 def looked_at(reader: HungReader | None, state: State) -> dict[str, Array]:
-    """Values at an accepted state by path, the first axis time."""
-    return {} if reader is None else {name: value[None] for name, value in reader.look(state).items()}
-
-
-def joined(looks: Sequence[Mapping[str, Array]]) -> dict[str, Array]:
-    """Values at several instants, one after another, by name; the first axis is time."""
-    return {name: np.concatenate([each[name] for each in looks]) for name in looks[0]}
+    """Values at an accepted state by path."""
+    return {} if reader is None else reader.look(state)

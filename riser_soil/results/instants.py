@@ -85,8 +85,11 @@ class InstantReader:
             found["force_on_soil"] = self._on_soil(state)
         return found
 
-    def record_of(self, looks: Sequence[Look]) -> Record:
-        """All that is recorded of looks, each of them once and in their order: embedments only grow."""
+    def record_of(self, looks: Sequence[Look], misfits: bool = False) -> Record:
+        """All that is recorded of looks, each of them once and in their order: embedments only grow.
+
+        misfits: whether those of the elements' bending are in it.
+        """
         inside = self._inside(np.stack([each.inside for each in looks]))
         found = self._found([np.stack(vectors) for vectors in zip(*(each.contacts for each in looks), strict=True)])
         pressed = np.sum([np.zeros(inside.effective_tension.shape), *(of.force_per_length for of in found)], axis=0)
@@ -94,15 +97,11 @@ class InstantReader:
         values = riser_values(self._riser, inside, pressed, pressure)
         if self._checks is not None:
             values |= code_values(self._riser, self._checks, inside, pressed, pressure)
+        if misfits:
+            smooth, steep = bending_misfits(self._riser.line, self._riser.elements, inside.ends)
+            values |= {"smooth_misfit": smooth, "steep_misfit": steep}
         values |= self._touch(inside, found) | stacked([each.ground for each in looks])
         return Record(self._riser.line.arc, values)
-
-    def bending_misfits(self, looks: Sequence[Look]) -> tuple[Array, Array]:
-        """Misfits of the elements' bending [N.m] at looks, by the formula with shear and by the trapezoidal rule;
-        each (nt, ne).
-        """
-        sections = self._inside(np.stack([each.inside for each in looks]))
-        return bending_misfits(self._riser.line, self._riser.elements, sections)
 
     def _inside(self, numbers: Array) -> SectionForces:
         return SectionForces(self._riser.line, self._riser.elements, numbers)

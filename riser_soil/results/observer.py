@@ -31,13 +31,14 @@ from riser_soil.core.snapshot import (
     SoilSnapshot,
     StepRecord,
     StepStatistics,
+    stacked,
 )
 from riser_soil.errors import Interruption, MemoryShortageError, RiserSoilError, SolveError
 from riser_soil.interruption import leave_between_steps, uninterrupted
 from riser_soil.results.checkpoint import CheckpointSchedule, about
 from riser_soil.results.energy_ledger import EnergyLedger
 from riser_soil.results.functional_run import line_checks
-from riser_soil.results.hung_figures import hung_reader, joined, looked_at
+from riser_soil.results.hung_figures import hung_reader, looked_at
 from riser_soil.results.instants import InstantReader, Look
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.plausibility import BoundaryStress, Plausibility, PressedSoil, boundary_stress
@@ -169,7 +170,7 @@ class Observer:
         soil = self._soil()
         if self._recorder is not None:
             records = {name: reader.record_of([reader.look(stepper)]) for name, reader in self._instants.items()}
-            self._recorder.begin_at(records, soil, looked_at(self._hung, stepper.now))
+            self._recorder.begin_at(records, soil, stacked([looked_at(self._hung, stepper.now)]))
             if self._peaks is not None:
                 self._peaks.record([0.0], records)
 
@@ -211,24 +212,29 @@ class Observer:
         steps, self._buffer, recorder = self._buffer, [], self._recorder
         if not steps or recorder is None or recorder.closed:
             return
-        made, readers = [each.record for each in steps], self._instants.items()
-        records = {name: reader.record_of([each.looks[name] for each in steps]) for name, reader in readers}
-        hung = joined([each.hung for each in steps])
+        made, pictured = [each.record for each in steps], any(each.due.pictures for each in steps)
+        looks = {name: [each.looks[name] for each in steps] for name in self._instants}
+        records = {name: reader.record_of(looks[name], misfits=pictured) for name, reader in self._instants.items()}
+        hung = stacked([each.hung for each in steps])
         recorder.accept(made, [each.due for each in steps], records, steps[-1].soil, hung)
         if self._peaks is not None:
             self._peaks.record([step.t for step in made], records)
         self._check_plausibility(recorder, steps, records)
 
     def _check_plausibility(self, recorder: Recorder, steps: Sequence[BufferedStep], records: Records) -> None:
-        """Check whether what was recorded is plausible, for the summary's warnings."""
-        self._check_bending(recorder, [each for each in steps if each.due.pictures])
+        """Check whether what was recorded is plausible, for the summary's warnings; where pictures are made whether the
+        elements resolve the bending, too.
+        """
         recorded = [n for n, each in enumerate(steps) if each.due.series]
         if not recorded:
             return
-        times, stage = np.array([recorder.time_at(steps[n].record.t) for n in recorded]), recorder.summary.stages[-1]
+        pictured = [n for n in recorded if steps[n].due.pictures]
+        times, stage = np.array([recorder.time_at(each.record.t) for each in steps]), recorder.summary.stages[-1]
         for name, plausibility in self._plausibility.items():
-            plausibility.look(times, records[name].at(recorded))
-            for t, n in zip(as_list(times), recorded, strict=True):
+            if pictured:
+                plausibility.look_closely(times[pictured], records[name].at(pictured))
+            plausibility.look(times[recorded], records[name].at(recorded))
+            for t, n in zip(as_list(times[recorded]), recorded, strict=True):
                 if name in steps[n].pressed:
                     plausibility.look_at_soil(t, steps[n].pressed[name], records[name].at(n))
             tally = stage.lines[name]
@@ -240,13 +246,6 @@ class Observer:
         """Soil under lines that lie on some, by their names."""
         each = {name: plausibility.pressed_soil(state) for name, plausibility in self._plausibility.items()}
         return {name: pressed for name, pressed in each.items() if pressed is not None}
-
-    def _check_bending(self, recorder: Recorder, steps: Sequence[BufferedStep]) -> None:
-        """Check whether the elements resolve the bending where pictures are made, which cost more."""
-        times = np.array([recorder.time_at(step.record.t) for step in steps])
-        for name, plausibility in self._plausibility.items() if steps else ():
-            misfits = self._instants[name].bending_misfits([step.looks[name] for step in steps])
-            plausibility.look_closely(times, *misfits)
 
     def checkpoint(self, gather: Callable[[], Saved], last: bool, leaving: bool) -> None:
         """Write the state after a recorded step, where it is due; collective. Arguments as of `CheckpointWriter`."""

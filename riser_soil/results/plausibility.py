@@ -179,10 +179,10 @@ class Plausibility:
         outside = np.maximum(grid.low[:2] - at, at - grid.high[:2]).max()
         return np.array([max(0.0, float(np.nan_to_num(outside, nan=0.0)))])
 
-    def look_closely(self, times: Array, smooth: Array, steep: Array) -> None:
-        """times (nt,): as above; smooth, steep (nt, ne): from `bending_misfits`."""
-        misfits = {"misfit": smooth, "smooth misfit": self._without_small(smooth)}
-        self._follow(times, self._middle, misfits | {"steep misfit": self._without_small(steep)})
+    def look_closely(self, times: Array, record: Record) -> None:
+        """Take in misfits of the elements' bending, which cost more, at some times (nt,) as above."""
+        misfits = {"misfit": record.smooth_misfit, "smooth misfit": self._without_small(record.smooth_misfit)}
+        self._follow(times, self._middle, misfits | {"steep misfit": self._without_small(record.steep_misfit)})
 
     def _without_small(self, misfit: Array) -> Array:
         """Misfits (nt, ne) [N m]; 0 where the turn of the element is too small to mind."""

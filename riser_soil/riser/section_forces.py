@@ -68,19 +68,6 @@ def _total(forces: Iterable[Array | None], shape: tuple[int, int]) -> Array:
     return total
 
 
-def section_forces(
-    line: Line,
-    elements: Elements,
-    state: State,
-    residual: Array,
-    viscous: Array | None = None,
-    nodal: Array | None = None,
-) -> SectionForces:
-    """Section forces of one state by residuals from `element_residual`, `viscous_residual`, `nodal_residual`."""
-    given = section_input(line, placed(line, state), residual, viscous, on_ends(line, state, nodal))
-    return SectionForces(line, elements, given)
-
-
 def placed(line: Line, state: State) -> Configuration:
     """The line's configuration at a state, until the next call."""
     trial = line.once(LineTrials).now

@@ -61,8 +61,8 @@ class StepResults:
         return joined(bulk, accepted=True)
 
     def element_residual(self, line: Line, state: State) -> Array:
-        """Residual of a line's elements (ne, 2 ndof) at an accepted state, see `section_forces`; on the rank that has
-        it, until the next call.
+        """Residual of a line's elements (ne, 2 ndof) at an accepted state, see `riser.section_forces`; on the rank that
+        has it, until the next call.
         """
         if line not in self._acting:
             self._acting[line] = joined(acting_on(line, self.system.model.parts))

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from riser_soil.assembly import Assembly, build, sized
-from riser_soil.core.snapshot import Record, Records, SoilSnapshot
+from riser_soil.core.snapshot import Record, Records, SoilSnapshot, stacked
 from riser_soil.results.hung_figures import hung_reader, looked_at
 from riser_soil.results.instants import InstantReader
 from riser_soil.results.peaks import RunPeaks
@@ -58,5 +58,5 @@ class _PeakObserver(StatelessObserver):
 
     def _record(self, t: float, stepper: TimeStepper, soil: SoilSnapshot | None = None) -> Records:
         records = {line: reader.record_of([reader.look(stepper)]) for line, reader in self._readers.items()}
-        self.peaks.record([t], records, soil, looked_at(self._hung, stepper.now))
+        self.peaks.record([t], records, soil, stacked([looked_at(self._hung, stepper.now)]))
         return records

@@ -16,10 +16,11 @@ from riser_soil.riser.beam import Beam
 from riser_soil.riser.catenary import Catenary, catenary
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End
-from riser_soil.riser.section_forces import SectionForces, element_residual, section_forces
+from riser_soil.riser.section_forces import SectionForces, element_residual
 from riser_soil.riser.sections import Elements, Surroundings
 from tests.support.dense_chain import solve
 from tests.support.pipes import pipe
+from tests.support.sections import section_forces
 
 LENGTH, TOP = 350.0, np.array([150.0, 0.0, 150.0])
 EI, EA = 20.96e3, 15.38e8

@@ -22,7 +22,6 @@ from riser_soil.riser.section_forces import (
     SectionForces,
     element_residual,
     nodal_residual,
-    section_forces,
     viscous_residual,
 )
 from riser_soil.solve.convergence import CONVERGED, StopLimits
@@ -35,6 +34,7 @@ from tests.support import sample_water
 from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, error
 from tests.support.sample_line import Sample, sample
+from tests.support.sections import section_forces
 
 # Parts whose kernels say what they turn over.
 TURNING = "end spring", "contents", "morison", "vortices", "buoyancy", "seabed", "friction"

@@ -78,6 +78,11 @@ def _wall(tension: Array, moment: Array) -> dict[str, Any]:
     }
 
 
+def changed(record: Record, **values: Any) -> Record:
+    """With other values, or further ones; None takes one out."""
+    return Record(record.arc, {**record, **values})
+
+
 def stacked(records: Sequence[Record]) -> Record:
     """Single instants as many."""
     return Record(records[0].arc, stacked_values(records))

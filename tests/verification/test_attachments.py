@@ -20,12 +20,13 @@ from riser_soil.riser.inertia import Inertia
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End, Kinematics
 from riser_soil.riser.line_part import acting_on
-from riser_soil.riser.section_forces import SectionForces, element_residual, section_forces
+from riser_soil.riser.section_forces import SectionForces, element_residual
 from tests.support.dense_chain import solve, tangent
 from tests.support.driven_stage import built, take
 from tests.support.pipes import WEIGHTLESS, pipe
 from tests.support.sample_line import sample
 from tests.support.scenes import AVERAGE, Mapping, dynamic, prescribed, riser_scene, static
+from tests.support.sections import section_forces
 from tests.support.stage_histories import stage_histories
 
 G, RHO = 9.81, 1025.0

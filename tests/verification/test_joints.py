@@ -16,12 +16,13 @@ from riser_soil.riser.catenary import catenary
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End
 from riser_soil.riser.loads import AppliedLoad, PointLoads
-from riser_soil.riser.section_forces import element_residual, section_forces
+from riser_soil.riser.section_forces import element_residual
 from riser_soil.riser.sections import Elements, elements
 from riser_soil.riser.sections import joined as in_a_row
 from riser_soil.scene.riser import graded_lengths
 from tests.support.dense_chain import solve
 from tests.support.pipes import IN_AIR, WEIGHTLESS, pipe
+from tests.support.sections import section_forces
 
 UP = np.array([0.0, 0.0, 1.0])
 

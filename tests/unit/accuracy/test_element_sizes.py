@@ -14,7 +14,7 @@ from riser_soil.assembly.graded_segments import graded
 from riser_soil.core.arrays import Array
 from riser_soil.core.snapshot import Record
 from riser_soil.scene.riser import Segment
-from tests.support.recorded_run import Catenary
+from tests.support.recorded_run import Catenary, changed
 
 LENGTH, SHARE = 100.0, 0.01
 ARC = np.linspace(0.0, LENGTH, 201)
@@ -28,7 +28,7 @@ def record(moment: Array, tension: Array, **more: Array) -> Record:
     vector = np.zeros((ARC.size, 3))
     vector[:, 1] = moment
     given: dict[str, Any] = {"moment_vector": vector, "bending_moment": np.abs(moment), "effective_tension": tension}
-    return line.record(ARC).with_values(**(given | LIMP | more))
+    return changed(line.record(ARC), **(given | LIMP | more))
 
 
 def envelope(*instants: Record) -> CurveEnvelope:

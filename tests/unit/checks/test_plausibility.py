@@ -111,8 +111,9 @@ def judged(
     values = {"effective_tension": np.array([tension]), "curvature": np.zeros((1, count))}
     values["bending_moment"] = np.full((1, count), moment)
     plausibility.look(np.ones(1), Record(assembly.riser.line.arc, values))
-    misfits = (np.array([each or np.zeros(count - 1)]) for each in (smooth, steep))
-    plausibility.look_closely(np.ones(1), *misfits)
+    misfits = {"smooth_misfit": smooth, "steep_misfit": steep}
+    closely = {name: np.array([values or np.zeros(count - 1)]) for name, values in misfits.items()}
+    plausibility.look_closely(np.ones(1), Record(assembly.riser.line.arc, closely))
     again = Plausibility(assembly.riser)
     again.begin_stage(assembly.scene.stages[0])
     again.restore(plausibility.state())

@@ -33,7 +33,7 @@ def misfit_of(scene: Mapping) -> tuple[Misfit, float]:
     def watch(stepper: TimeStepper, step: AcceptedStep) -> None:
         line, elements, accepted = assembly.riser.line, assembly.riser.elements, stepper.newton.accepted
         sections = SectionForces(line, elements, accepted.section_input(line, stepper.now))
-        smooth, steep = bending_misfits(line, elements, sections)
+        smooth, steep = bending_misfits(line, elements, sections.ends)
         residual = accepted.element_residual(line, stepper.now)
         moment = np.abs(residual[:, [2, -1]] if line.dimension == 2 else residual[:, [4, 10]])
         misfits.append((Misfit(float(smooth.max()), float(steep.max())), float(moment.max())))
@@ -138,7 +138,7 @@ def test_misfits_of_many_states_are_those_of_each(dimension: int) -> None:
         rows.append(section_input(made.line, at, residual, viscous_residual(made.line, parts, state)))
 
     def misfits(given: Any) -> tuple[Any, Any]:
-        return bending_misfits(made.line, made.elements, SectionForces(made.line, made.elements, given))
+        return bending_misfits(made.line, made.elements, SectionForces(made.line, made.elements, given).ends)
 
     for n, row in enumerate(rows):
         for of_one, of_many in zip(misfits(row), misfits(np.stack(rows)), strict=True):

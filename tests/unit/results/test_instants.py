@@ -8,7 +8,7 @@ import pytest
 from riser_soil.core.arrays import views
 from riser_soil.results.figures import Extremes, pack
 from riser_soil.riser.wall_stress import Wall, wall_sections
-from tests.support.recorded_run import Catenary, stacked
+from tests.support.recorded_run import Catenary, changed, stacked
 
 ARC = np.linspace(0.0, 150.0, 31)
 SEEN = [Catenary(a, 60.0 - a).record(ARC) for a in (30.0, 34.0, 31.0)]
@@ -52,7 +52,7 @@ def test_walls_of_many_are_those_of_each() -> None:
 
 
 def test_what_is_not_known_is_not_there() -> None:
-    record = SEEN[0].with_values(slip=None, largest_moment=None)
+    record = changed(SEEN[0], slip=None, largest_moment=None)
     assert "slip" not in record
     assert record.get("slip") is None
     assert record.extreme("largest_moment") is None

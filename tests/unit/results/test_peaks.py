@@ -9,7 +9,7 @@ from riser_soil.core.arrays import as_list
 from riser_soil.core.snapshot import Record
 from riser_soil.results.figures import pack, places_of
 from riser_soil.results.peaks import WINDOWS, RunPeaks, least_between_nodes, vertex, with_least_between_nodes
-from tests.support.recorded_run import Catenary, stacked
+from tests.support.recorded_run import Catenary, changed, stacked
 
 ARC = np.linspace(0.0, 150.0, 31)
 
@@ -38,20 +38,20 @@ def test_peak_at_an_end_stays_there() -> None:
 def record_at(t: float) -> Record:
     """Catenary whose largest moment grows and falls with time."""
     record = Catenary(32.0, 30.0).record(ARC)
-    return record.with_values(largest_moment=record.largest_moment * np.cos(t))
+    return changed(record, largest_moment=record.largest_moment * np.cos(t))
 
 
 def test_only_what_sits_between_nodes_is_replaced() -> None:
     """The least tension is the only figure at nodes."""
     tension = (ARC - 67.0) ** 2
     at_node = {"least_tension": tension.min(), "least_tension_arc": ARC[tension.argmin()]}
-    least = record_at(0.0).with_values(effective_tension=tension, **at_node)
+    least = changed(record_at(0.0), effective_tension=tension, **at_node)
     many = stacked([least])
     plain, (peaked,) = pack(least), with_least_between_nodes(many, pack(many))
-    changed = np.flatnonzero(~np.isclose(plain, peaked, equal_nan=True))
-    assert set(changed) == {places_of("min_effective_tension").start}
-    assert plain[changed] == pytest.approx([4.0])
-    assert peaked[changed] == pytest.approx([0.0], abs=1e-9)
+    replaced = np.flatnonzero(~np.isclose(plain, peaked, equal_nan=True))
+    assert set(replaced) == {places_of("min_effective_tension").start}
+    assert plain[replaced] == pytest.approx([4.0])
+    assert peaked[replaced] == pytest.approx([0.0], abs=1e-9)
 
 
 def test_extremes_of_a_stage_three_ways() -> None:
@@ -101,7 +101,7 @@ def followed(t: np.ndarray, moment: np.ndarray, duration: float = 1.0, kind: str
     peaks = RunPeaks()
     peaks.begin_stage("motion", kind, duration)
     line = Catenary(32.0, 30.0).record(ARC)
-    of_steps = [line.with_values(largest_moment=size, largest_moment_arc=ARC[0]) for size in moment]
+    of_steps = [changed(line, largest_moment=size, largest_moment_arc=ARC[0]) for size in moment]
     peaks.record(as_list(t), {"": stacked(of_steps)})
     return peaks
 

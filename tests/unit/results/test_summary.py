@@ -15,7 +15,7 @@ from riser_soil.results.figures import Extremes, final_state, pack
 from riser_soil.results.limit_tally import LimitTally
 from riser_soil.results.stage_tally import StageTally
 from riser_soil.results.summary import Summary, plain_json
-from tests.support.recorded_run import EI, FACTS, WEIGHT, Catenary, record, stacked
+from tests.support.recorded_run import EI, FACTS, WEIGHT, Catenary, changed, record, stacked
 from tests.support.said import line_with
 
 ARC = np.linspace(0.0, 150.0, 301)
@@ -83,7 +83,7 @@ def test_final_state_of_a_catenary() -> None:
 def test_what_is_unknown_is_left_out() -> None:
     sometimes: tuple[str, ...] = ("wall_tension", "largest_bend_utilisation", "tension_utilisation", "embedment")
     sometimes += ("wall_von_mises_stress", "stress_utilisation", *(name.removeprefix("max_") for name in CODE))
-    record = LINE.record(ARC).with_values(**dict.fromkeys(sometimes))
+    record = changed(LINE.record(ARC), **dict.fromkeys(sometimes))
     extremes = Extremes()
     extremes.update(0.0, pack(record))
     unknown = {"min_wall_tension", "max_wall_tension", "max_bend_utilisation", "max_embedment"}
@@ -94,7 +94,7 @@ def test_what_is_unknown_is_left_out() -> None:
 
 def test_a_straight_pipe_has_no_bend_radius() -> None:
     straight = dict.fromkeys(("largest_curvature", "largest_curvature_arc"), np.zeros(()))
-    final = final_state(pack(LINE.record(ARC).with_values(**straight)))
+    final = final_state(pack(changed(LINE.record(ARC), **straight)))
     assert plain_json(final)["min_bend_radius"] == {"value": None, "arc": 0.0}
 
 
@@ -108,7 +108,7 @@ def test_a_pipe_bent_too_much_is_a_warning() -> None:
 def bent(a: float) -> Record:
     """A catenary of this parameter [m], whose pipe may be bent to 20 m; weak in nothing else."""
     others = dict.fromkeys(("tension_utilisation", "stress_utilisation"))
-    return Catenary(a, 30.0).record(ARC).with_values(**others)
+    return changed(Catenary(a, 30.0).record(ARC), **others)
 
 
 def exceeded(*records: Record) -> list[str]:
@@ -127,8 +127,8 @@ def test_pull_and_stress_beyond_their_limits_are_warnings() -> None:
     """The largest of all nodes and instants, nan where a line type gives none, with its own tension and stress."""
     tension = {"tension_utilisation": np.where(ARC < 100.0, np.nan, 1.5)} | {"effective_tension": 10.0 * ARC}
     stress = {"stress_utilisation": np.where(ARC == 40.0, 1.2, 0.5), "most_used_stress": 1.0e6 * ARC}
-    calm, pulled = bent(25.0), bent(25.0).with_values(**tension, **stress)
-    known = calm.with_values(tension_utilisation=0.5 * np.ones_like(ARC), stress_utilisation=np.zeros_like(ARC))
+    calm, pulled = bent(25.0), changed(bent(25.0), **tension, **stress)
+    known = changed(calm, tension_utilisation=0.5 * np.ones_like(ARC), stress_utilisation=np.zeros_like(ARC))
     warnings = exceeded(known, pulled, known)
     assert len(warnings) == 2
     line_with(warnings, "max_tension", "1.5 times", "arc 100 m and 0.2 s", "tension is 1000 N")
@@ -184,7 +184,7 @@ def test_extremes_mirror_the_final_state() -> None:
 def test_lifting_off_does_not_spoil_the_touchdown_extremes() -> None:
     extremes = Extremes()
     for t, arc in ((0.0, math.nan), (0.1, 20.0), (0.2, math.nan)):
-        extremes.update(t, pack(LINE.record(ARC).with_values(touchdown_arc=np.array(arc))))
+        extremes.update(t, pack(changed(LINE.record(ARC), touchdown_arc=np.array(arc))))
     assert extremes.nested()["touchdown_arc"] == {"min": 20.0, "max": 20.0, "t_min": 0.1, "t_max": 0.1}
 
 

@@ -19,7 +19,6 @@ from riser_soil.riser.section_forces import (
     SectionForces,
     element_residual,
     placed,
-    section_forces,
     section_input,
     viscous_residual,
 )
@@ -30,6 +29,7 @@ from tests.support.line_solver import SECTION_FORCES
 from tests.support.pipes import pipe
 from tests.support.said import line_with, telling
 from tests.support.sample_line import DIRECTION, START, sample
+from tests.support.sections import section_forces
 
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
 

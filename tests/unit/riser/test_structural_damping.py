@@ -11,13 +11,14 @@ from riser_soil.riser import shapes
 from riser_soil.riser.beam import Beam
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_ends import End
-from riser_soil.riser.section_forces import element_residual, section_forces, viscous_residual
+from riser_soil.riser.section_forces import element_residual, viscous_residual
 from riser_soil.riser.sections import joined
 from riser_soil.riser.spatial_directors import SpatialOrientation
 from riser_soil.riser.structural_damping import StructuralDamping
 from tests.support.dense_chain import residual, tangent
 from tests.support.pipes import WEIGHTLESS, pipe
 from tests.support.sample_line import DIRECTION, START, THICK, THIN, UP, sample
+from tests.support.sections import section_forces
 
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
 NORMAL = np.cross(DIRECTION, UP)
