@@ -22,7 +22,7 @@ AT_END = 0.1  # of the time between checkpoints, after which there is one at a s
 
 
 class CheckpointSchedule:
-    """Says after each step whether a checkpoint is due: by wall time, at the ends of stages, where the run is left.
+    """Says after each step whether a checkpoint is due: by wall time, at the end of a stage, at an interruption.
 
     asked: None for no checkpoints at all.
     """
@@ -83,14 +83,14 @@ def _shares(folder: Path, scene: Scene, with_peaks: bool, ranks: int) -> list[Sa
     path = folder / CHECKPOINT
     if not path.exists():
         return None
-    found = read_checkpoint(path)
-    _refuse_another(found.about, path, scene, ranks)
-    if with_peaks and not any(name.startswith("observer/peaks/") for name in found.shares[0]):
+    checkpoint = read_checkpoint(path)
+    _refuse_another(checkpoint.about, path, scene, ranks)
+    if with_peaks and not any(name.startswith("observer/peaks/") for name in checkpoint.shares[0]):
         raise SceneError(
             f"{path}: the run was begun without error bars, which follow it from its beginning; go on without "
             "--error-bars"
         )
-    return found.shares
+    return checkpoint.shares
 
 
 def _refuse_another(about: About, path: Path, scene: Scene, ranks: int) -> None:

@@ -27,13 +27,13 @@ class Cycle:
 
 def stage_of_kind(run: Run, name: str | None, *kinds: str) -> int:
     """Number of a stage of one of these kinds by its name; the last one by default."""
-    found = {stage["name"]: n for n, stage in enumerate(run.summary["stages"]) if stage["kind"] in kinds}
-    chosen = name if name is not None else next(reversed(found), "")
-    if chosen not in found:
+    numbers = {stage["name"]: n for n, stage in enumerate(run.summary["stages"]) if stage["kind"] in kinds}
+    chosen = name if name is not None else next(reversed(numbers), "")
+    if chosen not in numbers:
         words = " or ".join(kinds)
-        known = f"its {words} stages: {', '.join(found)}" if found else f"it has no {words} stage"
+        known = f"its {words} stages: {', '.join(numbers)}" if numbers else f"it has no {words} stage"
         raise ResultsError(f'{run.place}: "{chosen}" is no {words} stage of the run; {known}')
-    return found[chosen]
+    return numbers[chosen]
 
 
 def dynamic_stage(run: Run, name: str | None) -> int:
@@ -54,13 +54,14 @@ def beginning(run: Run, stage: int) -> float:
 def period_of(run: Run, stage: int) -> float:
     """Period [s] of a stage's motion, or of regular waves where the ends stay."""
     stages = run.scene.get("stages") or []
-    found = {*_periods(stages[stage : stage + 1])} or {*_periods((run.scene.get("water") or {}).get("waves"))}
-    if len(found) != 1:
-        problem = f"has the periods {', '.join(f'{T:g}' for T in sorted(found))} s" if found else "has no one period"
+    periods = {*_periods(stages[stage : stage + 1])} or {*_periods((run.scene.get("water") or {}).get("waves"))}
+    if len(periods) != 1:
+        each = ", ".join(f"{T:g}" for T in sorted(periods))
+        problem = f"has the periods {each} s" if periods else "has no one period"
         raise ResultsError(
             f'{run.place}: stage "{run.stage_names[stage]}" {problem}; give the length of a cycle, period'
         )
-    return found.pop()
+    return periods.pop()
 
 
 def _periods(piece: Any) -> Iterator[float]:
@@ -124,20 +125,20 @@ def secant_stiffness(
     """
     _check_arcs(run, arcs)
     number = timed_stage(run, stage)
-    found = cycles(run, number, period_of(run, number) if period is None else period)
+    whole_cycles = cycles(run, number, period_of(run, number) if period is None else period)
     force, height = (_at(run, values, arcs) for values in (run["contact_force"], run["position"][..., 2]))
-    forces, heights = ([np.ptp(values[cycle.records], axis=0) for cycle in found] for values in (force, height))
-    ends = np.array([cycle.end for cycle in found])
+    forces, heights = ([np.ptp(values[cycle.records], axis=0) for cycle in whole_cycles] for values in (force, height))
+    ends = np.array([cycle.end for cycle in whole_cycles])
     return SecantStiffness(np.array(arcs), ends, np.array(forces), np.array(heights), _su(run))
 
 
-def write_csv(found: SecantStiffness, file: TextIO) -> None:
+def write_csv(stiffness: SecantStiffness, file: TextIO) -> None:
     """One line for each arc length and cycle, cycles counted from 1."""
     rows = csv.writer(file, lineterminator="\n")
     rows.writerow(COLUMNS)
-    for a, arc in enumerate(found.arc):
-        for c, end in enumerate(found.end):
-            values = (found.force[c, a], found.height[c, a], found.k[c, a], found.over_su[c, a])
+    for a, arc in enumerate(stiffness.arc):
+        for c, end in enumerate(stiffness.end):
+            values = (stiffness.force[c, a], stiffness.height[c, a], stiffness.k[c, a], stiffness.over_su[c, a])
             rows.writerow([f"{arc:.6g}", c + 1, f"{end:.6g}", *(f"{value:.6g}" for value in values)])
 
 

@@ -53,12 +53,12 @@ def _shares(folder: Path, assembly: Assembly) -> list[Saved]:
     if not is_finished(folder):
         raise SceneError(f"{KEY}: {folder}: holds no finished run; run it to its end first")
     path = folder / CHECKPOINT
-    found = read_checkpoint(path) if path.exists() else None
-    if found is None or found.about.ended != _last_stage(found.about)["name"]:
+    checkpoint = read_checkpoint(path) if path.exists() else None
+    if checkpoint is None or checkpoint.about.ended != _last_stage(checkpoint.about)["name"]:
         remedy = "run it again with output: {checkpoint: {keep: true}}"
         raise SceneError(f"{KEY}: {folder}: its run has not kept the state at its end; {remedy}")
-    _refuse(found.about, folder, assembly)
-    return found.shares
+    _refuse(checkpoint.about, folder, assembly)
+    return checkpoint.shares
 
 
 def _last_stage(about: About) -> dict[str, Any]:

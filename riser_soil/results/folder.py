@@ -31,8 +31,8 @@ _LOCK = "lock"
 
 def names_in(folder: Path) -> list[str]:
     """Names of a run's files, those of several lines included that are there."""
-    found = (folder.glob(OF_LINE.format("*").replace("xdmf", kind)) for kind in ("xdmf", "vtkhdf"))
-    return [*NAMES, *sorted(path.name for each in found for path in each)]
+    of_lines = (folder.glob(OF_LINE.format("*").replace("xdmf", kind)) for kind in ("xdmf", "vtkhdf"))
+    return [*NAMES, *sorted(path.name for each in of_lines for path in each)]
 
 
 def write_atomically(path: Path, content: str | bytes | memoryview, lasting: bool = False) -> None:
@@ -100,7 +100,7 @@ class FolderLock:
         self.release()
 
     def clear(self) -> None:
-        """Removes the drafts that a killed run has left."""
+        """Removes the drafts of a killed run."""
         for path in self._workshop.iterdir():
             if path.name != _LOCK:
                 path.unlink()

@@ -56,8 +56,7 @@ def _at_end(folder: Path, line: str, arc: Array, key: str) -> SectionEffects:
         raise SceneError(f"{key}: holds no finished run; run it to its end first")
     try:
         run = Run(folder, line or None)
-        found = run.arc
-        if found.shape != arc.shape or np.abs(found - arc).max() > SAME_ARC * arc[-1]:
+        if run.arc.shape != arc.shape or np.abs(run.arc - arc).max() > SAME_ARC * arc[-1]:
             raise SceneError(f"{key}: its line has other nodes than this one; give both scenes the same segments")
         tension, moment_y = run["effective_tension"][-1], run["bending_moment_y"][-1]
         moment_z = run["bending_moment_z"][-1] if run.has("bending_moment_z") else np.zeros_like(arc)

@@ -2,7 +2,7 @@
 
 The clearance of two lines is the least distance of polygons through their nodes. Two segments p + s d and q + t e, s
 and t from 0 to 1, are nearest where the gradient of their squared distance is zero, or on the border: s and t are found
-in turn, each held within its segment (Ericson, Real-Time Collision Detection, 2005, section 5.1.9).
+in turn, each kept within its segment (Ericson, Real-Time Collision Detection, 2005, section 5.1.9).
 """
 
 from __future__ import annotations
@@ -60,64 +60,64 @@ class HungReader:
     @property
     def variables(self) -> dict[str, Variable]:
         """By path in results.nc."""
-        found: dict[str, Variable] = {}
+        variables: dict[str, Variable] = {}
         for name, body in self._bodies.items():
             known = _OF_BODY if body.turns else {key: _OF_BODY[key] for key in ("position", "velocity")}
-            found |= {f"bodies/{name}/{key}": _vector(*texts) for key, texts in known.items()}
+            variables |= {f"bodies/{name}/{key}": _vector(*texts) for key, texts in known.items()}
         for name in self._contacts:
             force, depth = _ON_SEABED.items()
-            found |= {f"bodies/{name}/{force[0]}": _vector(*force[1])}
-            found |= {f"bodies/{name}/{depth[0]}": Variable(("time",), *depth[1])}
+            variables |= {f"bodies/{name}/{force[0]}": _vector(*force[1])}
+            variables |= {f"bodies/{name}/{depth[0]}": Variable(("time",), *depth[1])}
         for joint in self._assembly.scene.joints:
-            found |= {f"joints/{joint}/{key}": _vector(*texts) for key, texts in _OF_JOINT.items()}
+            variables |= {f"joints/{joint}/{key}": _vector(*texts) for key, texts in _OF_JOINT.items()}
         for pair in self._pairs:
-            found |= {f"{pair.path}/{key}": Variable(("time",), *texts) for key, texts in _OF_PAIR.items()}
-        return found
+            variables |= {f"{pair.path}/{key}": Variable(("time",), *texts) for key, texts in _OF_PAIR.items()}
+        return variables
 
     def look(self, state: State) -> dict[str, Array]:
         """Values at an accepted state."""
-        found: dict[str, Array] = {}
+        values: dict[str, Array] = {}
         for name, body in self._bodies.items():
-            found[f"bodies/{name}/position"] = body.x[0]
-            found[f"bodies/{name}/velocity"] = body.nodal(state.v)[0, :3].copy()
+            values[f"bodies/{name}/position"] = body.x[0]
+            values[f"bodies/{name}/velocity"] = body.nodal(state.v)[0, :3].copy()
             if body.turns:
-                found[f"bodies/{name}/rotation"] = np.array(rotations.log(matrix(body.frames.R[0])))
+                values[f"bodies/{name}/rotation"] = np.array(rotations.log(matrix(body.frames.R[0])))
         for name, contact in self._contacts.items():
             friction = self._frictions.get(name)
             rubbed = np.zeros(3) if friction is None else friction.force_on_body(state)
-            found[f"bodies/{name}/contact_force"] = contact.force_on_body(state) + rubbed
-            found[f"bodies/{name}/penetration"] = np.array(contact.penetration(state))
+            values[f"bodies/{name}/contact_force"] = contact.force_on_body(state) + rubbed
+            values[f"bodies/{name}/penetration"] = np.array(contact.penetration(state))
         if self._joints is not None:
-            for key, values in zip(_OF_JOINT, self._joints.acting(state), strict=True):
-                of_each = zip(self._assembly.scene.joints, values, strict=True)
-                found |= {f"joints/{joint}/{key}": row for joint, row in of_each}
+            for key, of_joints in zip(_OF_JOINT, self._joints.acting(state), strict=True):
+                of_each = zip(self._assembly.scene.joints, of_joints, strict=True)
+                values |= {f"joints/{joint}/{key}": row for joint, row in of_each}
         for pair in self._pairs:
-            found |= {f"{pair.path}/{key}": value for key, value in zip(_OF_PAIR, pair.look(), strict=True)}
-        return found
+            values |= {f"{pair.path}/{key}": value for key, value in zip(_OF_PAIR, pair.look(), strict=True)}
+        return values
 
-    def warnings(self, found: Mapping[str, Any]) -> list[str]:
-        """Warnings of rigid joints that gape, by the extremes of a stage."""
+    def warnings(self, figures: Mapping[str, Any]) -> list[str]:
+        """Warnings of rigid joints that gape and of bodies below ground. figures: of a stage, see `HungExtremes`."""
         joints = () if self._joints is None else self._joints.joints
         given = self._assembly.scene.joints
-        told = []
+        warnings = []
         for joint in joints:
             stiffness = given[joint.name].stiffness
-            gap = found["joints"][joint.name]["gap"]
+            gap = figures["joints"][joint.name]["gap"]
             largest = float(np.linalg.norm(np.fmax(np.abs(gap["min"]), np.abs(gap["max"]))))
             allowed = GAPES * self._assembly.scales.diameter
             if largest > allowed and (stiffness is None or stiffness.translation is None):
-                told.append(
+                warnings.append(
                     f"joint {joint.name} gapes by up to {largest:.3g} m (limit {GAPES:g} diameters): it gives as "
                     "the elements beside it do, which stretch as much; take shorter ones there, and check what pulls"
                 )
-        return [*told, *self._sunk(found)]
+        return [*warnings, *self._sunk(figures)]
 
-    def _sunk(self, found: Mapping[str, Any]) -> Iterator[str]:
+    def _sunk(self, figures: Mapping[str, Any]) -> Iterator[str]:
         """Warnings of bodies below ground that they have no contact with."""
         scene = self._assembly.scene
         view = next(iter(self._assembly.lines.values())).scene
         for name in self._bodies if scene.has_ground else ():
-            x, y, z = map(float, found["bodies"][name]["position"]["final"])
+            x, y, z = map(float, figures["bodies"][name]["position"]["final"])
             if name not in self._contacts and z < (level := ground_height(view, (x, y, z))):
                 yield (
                     f"body {name} is at z = {z:.4g} m, {level - z:.4g} m below the ground, and has no contact with it: "
@@ -176,14 +176,14 @@ def between_segments(first: Array, second: Array, third: Array, fourth: Array) -
     d, e, r = sub(vector(second), p), sub(vector(fourth), q), sub(p, q)
     dd, ee, de, dr, er = dot(d, d), dot(e, e), dot(d, e), dot(d, r), dot(e, r)
     det = dd * ee - de * de
-    s = _held((de * er - dr * ee) / det) if det > 1e-12 * dd * ee else 0.0
+    s = _from_0_to_1((de * er - dr * ee) / det) if det > 1e-12 * dd * ee else 0.0
     t = (de * s + er) / ee
     if t < 0.0 or t > 1.0:
-        t = _held(t)
-        s = _held((de * t - dr) / dd)
+        t = _from_0_to_1(t)
+        s = _from_0_to_1((de * t - dr) / dd)
     return norm(sub(add(p, scale(s, d)), add(q, scale(t, e)))), s, t
 
 
 @njit
-def _held(value: float) -> float:
+def _from_0_to_1(value: float) -> float:
     return min(1.0, max(0.0, value))

@@ -22,8 +22,9 @@ import numpy as np
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, unpacked
 from riser_soil.core.snapshot import Ledger, StepRecord
-from riser_soil.results.doubtful_extremes import AT, JUDGED, JudgedExtremes, TimeResolution
+from riser_soil.results.doubtful_extremes import AT, JUDGED, JudgedExtremes
 from riser_soil.results.largest import Largest
+from riser_soil.results.time_resolution import TimeResolution
 
 # Local error of a step, over the diameter, from which the motion is not followed; automatic steps keep to 0.02.
 LARGE_LOCAL_ERROR = 2.0

@@ -1,6 +1,6 @@
 """Records of a run: a look at each accepted state, and all that follows from many looks at once.
 
-A look is what has to be taken before the riser moves on, a few vectors. All that follows from them is found for many
+A look is what has to be copied before the riser moves on, a few vectors. All that follows from them is found for many
 steps together, as each of its operations takes an interpreter longer than the numbers of one instant do.
 """
 
@@ -44,7 +44,7 @@ class Look(NamedTuple):
 
 
 class InstantReader:
-    """Looks at a run's states, and tells of them; on the rank that holds the riser.
+    """Looks at a run's states, and makes records of them; on the rank that holds the riser.
 
     fields: names of the quantities wanted, of those of contact and ground. checks: its code checks, None for none.
     """
@@ -56,7 +56,7 @@ class InstantReader:
         self._checks = checks
 
     def begin_stage(self, name: str) -> None:
-        """All looks before have been told of."""
+        """Begin a stage; records of all looks of the stage before have been made."""
         if self._checks is not None:
             self._checks.begin_stage(name)
 
@@ -67,23 +67,23 @@ class InstantReader:
         """
         contacts, state = self._riser.contacts, stepper.now
         inside = stepper.newton.accepted.section_input(self._riser.line, state)
-        found = tuple(stepper.newton.accepted.contact_results(contact, state) for contact in contacts)
+        contact_results = tuple(stepper.newton.accepted.contact_results(contact, state) for contact in contacts)
         if self._sections is not None and (lay_sections or not self._sections.laid):
             of_one = self._inside(inside[None])
-            arc, _, _ = self._touchdown(of_one, self._found([own[None] for own in found]))
+            arc, _, _ = self._touchdown(of_one, self._results_of_contacts([own[None] for own in contact_results]))
             self._sections.lay(of_one.position[0], of_one.tangent[0], float(arc[0]))
-        return Look(inside, self._riser.pressure_change(state.t), found, self._ground(state))
+        return Look(inside, self._riser.pressure_change(state.t), contact_results, self._ground(state))
 
     def _ground(self, state: State) -> dict[str, Array]:
         wanted = self._fields if self._riser.contacts else ()
-        found = {} if self._sections is None else self._sections.look(state)
+        values = {} if self._sections is None else self._sections.look(state)
         if "slip" in wanted:
-            found["slip"] = self._slip()
+            values["slip"] = self._slip()
         if "soil_settlement" in wanted and self._riser.soil is not None:
-            found["soil_settlement"] = self._settlement(self._riser.soil, state)
+            values["soil_settlement"] = self._settlement(self._riser.soil, state)
         if "force_on_soil" in wanted:
-            found["force_on_soil"] = self._on_soil(state)
-        return found
+            values["force_on_soil"] = self._on_soil(state)
+        return values
 
     def record_of(self, looks: Sequence[Look], misfits: bool = False) -> Record:
         """All that is recorded of looks, each of them once and in their order: embedments only grow.
@@ -91,8 +91,9 @@ class InstantReader:
         misfits: whether those of the elements' bending are in it.
         """
         inside = self._inside(np.stack([each.inside for each in looks]))
-        found = self._found([np.stack(vectors) for vectors in zip(*(each.contacts for each in looks), strict=True)])
-        pressed = np.sum([np.zeros(inside.effective_tension.shape), *(of.force_per_length for of in found)], axis=0)
+        packed = [np.stack(vectors) for vectors in zip(*(each.contacts for each in looks), strict=True)]
+        contacts = self._results_of_contacts(packed)
+        pressed = np.sum([np.zeros(inside.effective_tension.shape), *(of.force_per_length for of in contacts)], axis=0)
         pressure = np.array([each.pressure for each in looks])
         values = riser_values(self._riser, inside, pressed, pressure)
         if self._checks is not None:
@@ -100,13 +101,13 @@ class InstantReader:
         if misfits:
             smooth, steep = bending_misfits(self._riser.line, self._riser.elements, inside.ends)
             values |= {"smooth_misfit": smooth, "steep_misfit": steep}
-        values |= self._touch(inside, found) | stacked([each.ground for each in looks])
+        values |= self._touch(inside, contacts) | stacked([each.ground for each in looks])
         return Record(self._riser.line.arc, values)
 
     def _inside(self, numbers: Array) -> SectionForces:
         return SectionForces(self._riser.line, self._riser.elements, numbers)
 
-    def _found(self, numbers: Sequence[Array]) -> list[ContactResults]:
+    def _results_of_contacts(self, numbers: Sequence[Array]) -> list[ContactResults]:
         """Results of each contact from packed numbers, a row an instant."""
         if not numbers:
             return []
@@ -116,27 +117,27 @@ class InstantReader:
         sizes = [contact.along.arc.size for contact in contacts]
         return [ContactResults.within(own, nodes, size) for own, size in zip(numbers, sizes, strict=True)]
 
-    def _touch(self, inside: SectionForces, found: Sequence[ContactResults]) -> dict[str, Array | None]:
-        count = len(inside.position)
-        arc, position, points = self._touchdown(inside, found)
+    def _touch(self, inside: SectionForces, contacts: Sequence[ContactResults]) -> dict[str, Array | None]:
+        count, fields = len(inside.position), self._fields
+        arc, position, points = self._touchdown(inside, contacts)
         return {
             "touchdown_arc": arc,
             "touchdown_position": position,
             "touchdown_points": points,
-            "max_penetration": np.max([np.zeros(count), *(of.deepest[:, 0] for of in found)], axis=0),
-            "contact_force_sum": np.sum([np.zeros((count, 3)), *(of.on_riser for of in found)], axis=0),
-            "penetration": self._deepest([of.penetration for of in found]) if "penetration" in self._fields else None,
-            "embedment": self._embedded([of.depth for of in found]) if "embedment" in self._fields else None,
+            "max_penetration": np.max([np.zeros(count), *(of.deepest[:, 0] for of in contacts)], axis=0),
+            "contact_force_sum": np.sum([np.zeros((count, 3)), *(of.on_riser for of in contacts)], axis=0),
+            "penetration": self._deepest([of.penetration for of in contacts]) if "penetration" in fields else None,
+            "embedment": self._embedded([of.depth for of in contacts]) if "embedment" in fields else None,
         }
 
-    def _touchdown(self, inside: SectionForces, found: Sequence[ContactResults]) -> tuple[Array, Array, IntArray]:
+    def _touchdown(self, inside: SectionForces, contacts: Sequence[ContactResults]) -> tuple[Array, Array, IntArray]:
         """Arc length (nt,) and position (nt, 3) of the touchdown point, number of touchdown points (nt,)."""
         count, line = len(inside.position), self._riser.line
-        if not found:
+        if not contacts:
             return np.full(count, np.nan), np.full((count, 3), np.nan), np.zeros(count, dtype=np.int64)
 
-        contacts = zip(self._riser.contacts, found, strict=True)
-        of_each = [contact_intervals(*contact.along, of.clearance, of.force) for contact, of in contacts]
+        with_results = zip(self._riser.contacts, contacts, strict=True)
+        of_each = [contact_intervals(*contact.along, of.clearance, of.force) for contact, of in with_results]
         near = float(line.length.max())
         at_instants = [merged([*itertools.chain(*grounds)], near) for grounds in zip(*of_each, strict=True)]
         arc = np.array([touchdown_arc(intervals) for intervals in at_instants])
@@ -175,5 +176,5 @@ class InstantReader:
 
     @property
     def _owners(self) -> dict[str, Stateful]:
-        found: dict[str, Stateful] = {} if self._sections is None else {"sections": self._sections}
-        return found if self._checks is None else found | {"code checks": self._checks}
+        owners: dict[str, Stateful] = {} if self._sections is None else {"sections": self._sections}
+        return owners if self._checks is None else owners | {"code checks": self._checks}

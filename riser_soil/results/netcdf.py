@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import io
 from collections import defaultdict
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.output import OutputQuantity
 from riser_soil.core.saved_state import Saved, packed, unpacked
+from riser_soil.core.snapshot import Ledger, Record, Records, StepRecord
 from riser_soil.core.step_outputs import OF_STEP, REMOVED
 from riser_soil.results.growing_file import GrowingFile, append_rows, appending, behind, cutting_back
 from riser_soil.results.netcdf_layout import Variable, lay_out, values_in
@@ -222,3 +224,36 @@ def _name_stages(file: h5py.File, names: list[str]) -> None:
     for variable in ("stage", "step_stage"):
         file[variable].attrs["flag_values"] = np.arange(len(names), dtype="i4")
         file[variable].attrs["flag_meanings"] = " ".join(name.replace(" ", "_") for name in names)
+
+
+def series_rows(stamps: Sequence[float], records: Records, fields: Mapping[str, tuple[str, ...]]) -> dict[str, Any]:
+    """Rows of many instants by the names of SERIES behind those of the lines' groups, without outputs that are
+    not among a line's fields.
+    """
+    along = {
+        f"{group(line)}{name}": get(record)
+        for line, record in records.items()
+        for name, get in _wanted(fields[line])
+    }
+    return {"time": np.array(stamps)} | along
+
+
+@cache
+def _wanted(fields: tuple[str, ...]) -> list[tuple[str, Callable[[Record], Any]]]:
+    """Names of what is recorded, and how each follows from a record."""
+    recorded = (output for output in outputs.of_instant() if output.where != "summary")
+    return [(output.name, output.value) for output in recorded if output.name in fields or not output.chosen]
+
+
+def step_rows(steps: Sequence[StepRecord], accounts: Collection[str]) -> dict[str, list[float]]:
+    """By the names of HEALTH and the ledger's accounts; what a step has not booked is 0."""
+    booked = [_booked(step.ledger) for step in steps]
+    return {
+        **{output.name: [output.value(step) for step in steps] for output in OF_STEP},
+        **{name: [each.get(name, 0.0) for each in booked] for name in accounts},
+    }
+
+
+def _booked(ledger: Ledger) -> dict[str, float]:
+    lost = {f"dissipated_{name}": value for name, value in ledger.dissipated_by.items()}
+    return lost | {f"work_{name}": value for name, value in ledger.work_by.items()}

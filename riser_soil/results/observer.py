@@ -14,20 +14,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil import __version__
-from riser_soil.assembly import Assembly, LineAssembly
-from riser_soil.checks.inventory import inventory, unknowns
-from riser_soil.core import outputs
+from riser_soil.assembly import Assembly
+from riser_soil.checks.inventory import inventory
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.communicator import Communicator
-from riser_soil.core.environment import versions
-from riser_soil.core.output import Need
 from riser_soil.core.part import Energy, State
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.core.snapshot import (
-    CodeCheckFacts,
     Records,
-    RunFacts,
     SoilSnapshot,
     StepRecord,
     StepStatistics,
@@ -44,19 +38,15 @@ from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.plausibility import BoundaryStress, Plausibility, PressedSoil, boundary_stress
 from riser_soil.results.record import Keeping, Recorder
 from riser_soil.results.run_clock import RunClock
+from riser_soil.results.run_facts import facts_of, known_fields
 from riser_soil.results.schedule import DueOutputs, Schedule
 from riser_soil.results.screen import Progress, print_summary
-from riser_soil.results.settlement_trough import count_of, offsets_of
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.output import Checkpoint
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 from riser_soil.solve.dynamic_relaxation import RelaxationResult
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
 
-_CHECKED: tuple[Need, ...] = (  # utilisations of a `Record`
-    *("bursting", "hoop buckling", "propagating buckling", "combined loading"),
-    *("bend radius", "tension limit", "compression", "crushing", "capacity curve"),
-)
 MOST_STEPS, MOST_NUMBERS = 64, 1 << 20  # in the buffer, before it is written
 
 
@@ -90,7 +80,7 @@ class Observer:
         self._peaks = peaks if recorder is not None else None
         output = assembly.scene.output
         self._schedule = Schedule(output.interval, output.xdmf_interval)
-        lines, fields = assembly.lines, _known_fields(assembly)
+        lines, fields = assembly.lines, known_fields(assembly)
         checks = {name: line_checks(line, name) for name, line in lines.items()} if recorder is not None else {}
         self._instants = {name: InstantReader(line, fields[name], checks.get(name)) for name, line in lines.items()}
         self._hung = hung_reader(assembly)
@@ -118,12 +108,12 @@ class Observer:
         the first step, for the summary.
         """
         mesh = assembly.soil.whole.output_mesh() if assembly.soil is not None else None
-        known = facts(assembly, warnings)
+        known = facts_of(assembly, warnings)
         with Progress(enabled=assembly.comm.rank == 0) as progress:
             recorder = None
             with _on_all_ranks(assembly.comm), uninterrupted():
                 if assembly.comm.rank == 0:
-                    text, fields = dump_scene(assembly.scene), _known_fields(assembly)
+                    text, fields = dump_scene(assembly.scene), known_fields(assembly)
                     settings = _checkpoint_settings(assembly)
                     keeping = Keeping(goes_on, end=settings is not None and settings.keep)
                     arcs = {name: line.line.arc for name, line in assembly.lines.items()}
@@ -362,59 +352,3 @@ def _on_all_ranks(comm: Communicator) -> Iterator[None]:
     for error in comm.allgather(failure):
         if error is not None:
             raise error
-
-
-def _known_fields(assembly: Assembly) -> dict[str, tuple[str, ...]]:
-    """Fields of each line that the scene requests, as far as they can be computed."""
-    asked = assembly.scene.output.fields
-    return {name: outputs.known(asked, _known_of_line(line)) for name, line in assembly.lines.items()}
-
-
-def _known_of_line(riser: LineAssembly) -> list[Need]:
-    has: dict[Need, bool] = {
-        "pressures": riser.pressures is not None,
-        "min_bend_radius": riser.elements.limits_bending,
-        "max_tension": riser.elements.limits_tension,
-        "wall": riser.wall_sections is not None,
-        "wall in space": riser.wall_sections is not None and riser.line.dimension == 3,
-        "yield stress": bool(riser.elements.allowable_stress.any()),
-        "ground": bool(riser.contacts),
-        "friction": bool(riser.frictions),
-        "soil": riser.soil is not None,
-    }
-    if (checks := riser.code_checks()) is not None:
-        has["code check"] = True
-        has.update({need: need.replace(" ", "_") in checks.fields for need in _CHECKED})
-    return [need for need, there in has.items() if there]
-
-
-def _code_checks(assembly: Assembly) -> dict[str, tuple[CodeCheckFacts, ...]]:
-    """The code checks of lines that have some, by the line's name."""
-    checks = {name: line.code_checks() for name, line in assembly.lines.items()}
-    return {name: each.facts for name, each in checks.items() if each is not None}
-
-
-def facts(assembly: Assembly, warnings: Sequence[str] = ()) -> RunFacts:
-    """Facts about a run before its first step; collective."""
-    lying = assembly.line_on_soil if "settlement_across" in assembly.scene.output.fields else None
-    known = inventory(assembly)
-    return RunFacts(
-        title=assembly.scene.title,
-        version=__version__,
-        ranks=assembly.comm.size,
-        built=known.built,
-        left_out=known.left_out,
-        warnings=tuple(warnings),
-        versions=versions(),
-        dissipating=known.dissipating,
-        working=known.working,
-        riser_dofs=sum(unknowns(assembly.comm, field) for field in assembly.moving),
-        soil_dofs=unknowns(assembly.comm, assembly.soil.whole.field) if assembly.soil is not None else 0,
-        diameter=assembly.scales.diameter,
-        weight=max(own.scales.weight * float(np.ptp(own.line.arc)) for own in assembly.lines.values()),
-        contact_period=assembly.contact_period,
-        on_soil=assembly.name_on_soil,
-        sections=count_of(lying) if lying is not None else 0,
-        offsets=offsets_of(lying) if lying is not None else (),
-        code_checks=_code_checks(assembly),
-    )

@@ -33,9 +33,9 @@ _TENSION = "min_effective_tension"
 def vertex(t: Array, values: Array) -> Array:
     """Vertex of the parabola through samples (3, ...) at t (3,); the middle one where it is no extreme of the three."""
     before, after = t[1] - t[0], t[2] - t[1]
-    left, right = (values[1] - values[0]) / before, (values[2] - values[1]) / after
-    bend, slope = (right - left) / (before + after), (left * after + right * before) / (before + after)
-    turns = left * right < 0.0
+    first, second = (values[1] - values[0]) / before, (values[2] - values[1]) / after
+    bend, slope = (second - first) / (before + after), (first * after + second * before) / (before + after)
+    turns = first * second < 0.0
     return np.asarray(np.where(turns, values[1] - slope**2 / np.where(turns, 4.0 * bend, 1.0), values[1]))
 
 
@@ -90,9 +90,9 @@ class StagePeaks:
         at = np.array(times)
         for extremes, rows in ((self.sampled, sampled), (self.of_nodes, peaked)):
             extremes.update(at, rows)
-        for extremes, found in ((self.peaks, between), (self.smooth, smooth)):
-            if found:
-                extremes.update(np.array([t for t, _ in found]), np.array([row for _, row in found]))
+        for extremes, instants in ((self.peaks, between), (self.smooth, smooth)):
+            if instants:
+                extremes.update(np.array([t for t, _ in instants]), np.array([row for _, row in instants]))
 
     def _between_steps(self, t: float, peaked: Array) -> Iterator[tuple[float, Array]]:
         """Follow the stage's windows; the peak at the step before, if there is one, with its time."""

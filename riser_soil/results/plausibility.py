@@ -76,8 +76,8 @@ def boundary_stress(soil: Soil, across: int) -> BoundaryStress:
     bottom = (corners[..., 2] < grid.low[2] + near).any(axis=1)
     y = corners[..., across]
     sides = ((y < grid.low[across] + near) | (y > grid.high[across] - near)).any(axis=1)
-    found = [float(change[cells].max(initial=0.0)) for cells in (bottom, sides)]
-    return BoundaryStress(*(grid.nodes.comm.allreduce(value, MPI.MAX) for value in found))
+    largest = [float(change[cells].max(initial=0.0)) for cells in (bottom, sides)]
+    return BoundaryStress(*(grid.nodes.comm.allreduce(value, MPI.MAX) for value in largest))
 
 
 class Worst(NamedTuple):

@@ -83,7 +83,7 @@ class Run:
 
     @property
     def place(self) -> Path:
-        """Where these results are found again: the folder, or RUN/LINE."""
+        """Place of these results: the folder, or RUN/LINE."""
         return self.folder / self._group
 
     def of_line(self, name: str) -> Run:
@@ -138,12 +138,12 @@ class Run:
     @cached_property
     def hung(self) -> dict[str, tuple[str, bool]]:
         """Units of what is known of bodies, joints and clearances, and whether it is a vector, by its path."""
-        found = dict[str, tuple[str, bool]]()
+        units = dict[str, tuple[str, bool]]()
         with self._open(run_folder.SERIES) as file:
             for path in (f"{kind}/{name}" for kind in HUNG for name in file.get(kind, ())):
                 of_one = ((key, each) for key, each in file[path].items() if isinstance(each, h5py.Dataset))
-                found |= {f"{path}/{key}": (str(each.attrs["units"]), each.ndim > 1) for key, each in of_one}
-        return found
+                units |= {f"{path}/{key}": (str(each.attrs["units"]), each.ndim > 1) for key, each in of_one}
+        return units
 
     def _path_of(self, file: h5py.File, name: str) -> str | None:
         """Where a variable is: the line's own, else the run's; None where there is none."""
@@ -153,15 +153,15 @@ class Run:
     @cached_property
     def summary(self) -> dict[str, Any]:
         """The run's summary; of one of several lines, its own figures stand in the places of a single riser's."""
-        found, line = self._whole_summary, self._group[:-1]
+        whole, line = self._whole_summary, self._group[:-1]
         if not line:
-            return found
-        own: dict[str, Any] = {"stages": [_stage_of_line(stage, line) for stage in found["stages"]]}
-        if bars := found.get("error_bars"):
+            return whole
+        own: dict[str, Any] = {"stages": [_stage_of_line(stage, line) for stage in whole["stages"]]}
+        if bars := whole.get("error_bars"):
             own["error_bars"] = bars | {"quantities": [each for each in bars["quantities"] if each["of"] == line]}
-        if hung := found.get("hang_off"):
+        if hung := whole.get("hang_off"):
             own["hang_off"] = hung.get(line)
-        return found | own
+        return whole | own
 
     @cached_property
     def _whole_summary(self) -> dict[str, Any]:
@@ -175,13 +175,13 @@ class Run:
     @cached_property
     def scene(self) -> dict[str, Any]:
         """The resolved scene, scene.yaml, as plain data; of one of several lines with this line as its riser."""
-        found, line = self._whole_scene, self._group[:-1]
+        whole, line = self._whole_scene, self._group[:-1]
         if not line:
-            return found
-        stages = [stage | (stage.get("lines") or {}).get(line, {}) | {"lines": {}} for stage in found["stages"]]
-        soil = found["soil"] if (found["soil"] or {}).get("line") == line else None
-        alone = {"riser": found["lines"][line], "lines": {}, "bodies": {}, "joints": {}, "dimension": 3, "soil": soil}
-        return found | alone | {"stages": stages}
+            return whole
+        stages = [stage | (stage.get("lines") or {}).get(line, {}) | {"lines": {}} for stage in whole["stages"]]
+        soil = whole["soil"] if (whole["soil"] or {}).get("line") == line else None
+        alone = {"riser": whole["lines"][line], "lines": {}, "bodies": {}, "joints": {}, "dimension": 3, "soil": soil}
+        return whole | alone | {"stages": stages}
 
     @cached_property
     def _whole_scene(self) -> dict[str, Any]:
@@ -258,11 +258,11 @@ class Run:
 def _stage_of_line(stage: dict[str, Any], line: str) -> dict[str, Any]:
     """A stage of the summary with a line's figures in it; indicators of the steps are those of all lines."""
     own, shared = stage["lines"][line], stage.get("indicators", {})
-    found = {key: value for key, value in (stage | own).items() if key not in OF_ALL}
+    figures = {key: value for key, value in (stage | own).items() if key not in OF_ALL}
     indicators = shared | own.get("indicators", {})
     if "time_step" in shared:
         indicators["time_step"] = shared["time_step"] | indicators["time_step"]
-    return found | {"indicators": indicators}
+    return figures | {"indicators": indicators}
 
 
 def load(path: Path, group: str = "") -> xr.Dataset:
@@ -278,13 +278,13 @@ def load(path: Path, group: str = "") -> xr.Dataset:
     with path.open("rb") as file:
         with suppress(OSError):  # a file system without locks
             fcntl.flock(file, fcntl.LOCK_SH)
-        found = xr.load_dataset(file, engine="h5netcdf", decode_timedelta=False)
+        dataset = xr.load_dataset(file, engine="h5netcdf", decode_timedelta=False)
         if group:
             file.seek(0)
-            found = found.merge(xr.load_dataset(file, group=group, engine="h5netcdf", decode_timedelta=False))
+            dataset = dataset.merge(xr.load_dataset(file, group=group, engine="h5netcdf", decode_timedelta=False))
     for coordinate, of in {"stage_name": "stage", "step_stage_name": "step_stage"}.items():
-        found = found.assign_coords({coordinate: (found[of].dims, _names(found[of]))})
-    return found.set_coords(["stage", "step_stage", "step_time"])
+        dataset = dataset.assign_coords({coordinate: (dataset[of].dims, _names(dataset[of]))})
+    return dataset.set_coords(["stage", "step_stage", "step_time"])
 
 
 def _names(stage: xr.DataArray) -> np.ndarray:

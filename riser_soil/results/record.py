@@ -19,10 +19,10 @@ from riser_soil.errors import SceneError, WriteError
 from riser_soil.results import folder as run_folder
 from riser_soil.results.checkpoint_file import About, write_checkpoint
 from riser_soil.results.folder import FolderLock
-from riser_soil.results.netcdf import SeriesFile, ledger_variables
+from riser_soil.results.netcdf import SeriesFile, ledger_variables, series_rows, step_rows
 from riser_soil.results.netcdf_layout import Variable
 from riser_soil.results.ownership import prepare, sealed
-from riser_soil.results.run_frames import RunFrames, series_rows, step_rows
+from riser_soil.results.run_frames import RunFrames
 from riser_soil.results.schedule import DueOutputs
 from riser_soil.results.stage_tally import StageTally
 from riser_soil.results.summary import Summary
@@ -123,7 +123,7 @@ class Recorder:
 
     @property
     def summary(self) -> Summary:
-        """What is told of the stages so far."""
+        """Summary of the stages so far."""
         return self._tallies.summary
 
     @property
@@ -342,13 +342,13 @@ class Recorder:
 
     @property
     def _owners(self) -> dict[str, Stateful]:
-        found: dict[str, Stateful] = {"tallies": self._tallies, "series": self._series}
-        return found | self._frames.owners
+        owners: dict[str, Stateful] = {"tallies": self._tallies, "series": self._series}
+        return owners | self._frames.owners
 
 
 @contextmanager
 def _reported_when_full(folder: Path, then: Callable[[], None] | None = None, way_on: str = "") -> Iterator[None]:
-    """Raises WriteError for what the disk did not take, when `then` is done. way_on: told behind it."""
+    """Raises WriteError for what the disk did not take, when `then` is done. way_on: the end of the message."""
     try:
         yield
     except OSError as err:

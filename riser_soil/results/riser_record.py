@@ -163,6 +163,6 @@ def _utilisation(sections: WallSections, von_mises: Array, nodes: int) -> tuple[
     if not limited.any():
         return None, None
     used = np.divide(von_mises, sections.allowable, out=np.full(von_mises.shape, -np.inf), where=limited)
-    found, stress = (sections.at_nodes(values, used, nodes) for values in (used, von_mises))
-    there = np.isfinite(found)
-    return np.where(there, found, np.nan), np.where(there, stress, np.nan)
+    share, stress = (sections.at_nodes(values, used, nodes) for values in (used, von_mises))
+    there = np.isfinite(share)
+    return np.where(there, share, np.nan), np.where(there, stress, np.nan)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
-from functools import cache
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,44 +11,10 @@ import numpy as np
 from riser_soil.core import outputs
 from riser_soil.core.arrays import Array
 from riser_soil.core.saved_state import Stateful
-from riser_soil.core.snapshot import Ledger, Record, Records, SoilMesh, SoilSnapshot, StepRecord
-from riser_soil.core.step_outputs import OF_STEP
+from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
 from riser_soil.results import folder as run_folder
 from riser_soil.results.netcdf import group
 from riser_soil.results.xdmf import Frame, XdmfFile, polyline
-
-
-def series_rows(stamps: Sequence[float], records: Records, fields: Mapping[str, tuple[str, ...]]) -> dict[str, Any]:
-    """Rows of many instants by the names of netcdf.SERIES behind those of the lines' groups, without outputs that are
-    not among a line's fields.
-    """
-    along = {
-        f"{group(line)}{name}": get(record)
-        for line, record in records.items()
-        for name, get in _wanted(fields[line])
-    }
-    return {"time": np.array(stamps)} | along
-
-
-@cache
-def _wanted(fields: tuple[str, ...]) -> list[tuple[str, Callable[[Record], Any]]]:
-    """Names of what is recorded, and how each follows from what is seen."""
-    recorded = (output for output in outputs.of_instant() if output.where != "summary")
-    return [(output.name, output.value) for output in recorded if output.name in fields or not output.chosen]
-
-
-def step_rows(steps: Sequence[StepRecord], accounts: Collection[str]) -> dict[str, list[float]]:
-    """By the names of netcdf.HEALTH and the ledger's accounts; what a step has not booked is 0."""
-    booked = [_booked(step.ledger) for step in steps]
-    return {
-        **{output.name: [output.value(step) for step in steps] for output in OF_STEP},
-        **{name: [each.get(name, 0.0) for each in booked] for name in accounts},
-    }
-
-
-def _booked(ledger: Ledger) -> dict[str, float]:
-    lost = {f"dissipated_{name}": value for name, value in ledger.dissipated_by.items()}
-    return lost | {f"work_{name}": value for name, value in ledger.work_by.items()}
 
 
 def soil_frame(stamp: float, soil: SoilSnapshot, fields: Collection[str]) -> Frame:

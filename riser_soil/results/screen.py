@@ -102,8 +102,8 @@ def _hung_rows(stage: dict[str, Any]) -> Iterator[Row]:
     for name, joint in stage.get("joints", {}).items():
         yield f"force in joint {name}", _number(float(np.linalg.norm(joint["force"]["final"])), "kN", 1e-3)
     for name, pair in stage.get("clearance", {}).items():
-        found = pair["distance"]
-        yield f"clearance {name.replace('_', ' to ', 1)}", _span(found["final"], found, "m", 1.0)
+        distance = pair["distance"]
+        yield f"clearance {name.replace('_', ' to ', 1)}", _span(distance["final"], distance, "m", 1.0)
 
 
 def _step_rows(stage: dict[str, Any]) -> list[Row]:
@@ -119,7 +119,7 @@ def _step_rows(stage: dict[str, Any]) -> list[Row]:
 def _figure_rows(stage: dict[str, Any]) -> Iterator[Row]:
     """Rows of the known figures."""
     for _, figure in outputs.figures(_ORDER):
-        final, extremes = (_found(stage[key], figure.path) for key in ("final", "extremes"))
+        final, extremes = (_entry(stage[key], figure.path) for key in ("final", "extremes"))
         row = outputs.row_of(figure, stage["final"])
         if row is None or final is _NOTHING:
             continue
@@ -134,9 +134,9 @@ def _figure_rows(stage: dict[str, Any]) -> Iterator[Row]:
 
 def _soil_rows(stage: dict[str, Any]) -> Iterator[Row]:
     """Largest values in the soil, with place and time."""
-    found = stage.get("soil", {})
+    extremes = stage.get("soil", {})
     for figure in (figure for output in outputs.OF_SOIL for figure in output.figures):
-        largest = found.get(figure.name, {"value": 0.0})
+        largest = extremes.get(figure.name, {"value": 0.0})
         if figure.row is None or not largest["value"]:
             continue
         place = ", ".join(f"{round(x, 3) + 0.0:.4g}" for x in largest["position"])
@@ -145,7 +145,7 @@ def _soil_rows(stage: dict[str, Any]) -> Iterator[Row]:
         yield figure.row.words, f"{value} at ({place}) m{when}"
 
 
-def _found(nested: dict[str, Any], path: tuple[str, ...]) -> Any:
+def _entry(nested: dict[str, Any], path: tuple[str, ...]) -> Any:
     """The summary's entry at a place, or _NOTHING."""
     value: Any = nested
     for key in path:

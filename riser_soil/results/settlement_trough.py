@@ -76,10 +76,10 @@ class TroughSections:
         """Their places, and the settlement in them at a state: nan where none is laid yet, or beside the soil."""
         across = self._offsets[None, :, None] * self._direction[:, None, :2]
         xy = self._position[:, None, :2] + across
-        found, there = np.full(xy.shape[:2], np.nan), self._there
-        found[there] = self._contact.settlement(xy[there].reshape(-1, 2), state).reshape(-1, len(self._offsets))
+        settlement, there = np.full(xy.shape[:2], np.nan), self._there
+        settlement[there] = self._contact.settlement(xy[there].reshape(-1, 2), state).reshape(-1, len(self._offsets))
         places = {"arc": self._arc, "position": self._position, "direction": self._direction}
-        return {f"section_{name}": value.copy() for name, value in places.items()} | {"settlement_across": found}
+        return {f"section_{name}": value.copy() for name, value in places.items()} | {"settlement_across": settlement}
 
     @property
     def _there(self) -> BoolArray:

@@ -57,8 +57,8 @@ class StageTally:
     """Statistics of one stage, energy, bodies and joints, and a tally of each line by its name, "" of the only one.
 
     time: s simulated in it (static: 0). settlings: how often clay that did not bear the riser let it settle.
-    branch_switches: unstable equilibria that were left. hung: figures of bodies, joints and clearances. implausible:
-    what is not plausible about them.
+    branch_switches: how often relaxation left an unstable equilibrium. hung: figures of bodies, joints and clearances.
+    implausible: what is not plausible about them.
     """
 
     def __init__(
@@ -102,13 +102,13 @@ class StageTally:
 
     def as_dict(self) -> dict[str, Any]:
         own = {name: tally.as_dict(self.steps > 0) for name, tally in self.lines.items()}
-        found = {"name": self.name, "kind": self.kind} | {count: getattr(self, count) for count in _COUNTS}
-        found |= {"final": None, "method": self.method, "extremes": None, "energy": self._energy}
-        found |= {"warnings": self.warnings, "indicators": self.indicators.as_dict() if self.kind == "dynamic" else {}}
+        whole = {"name": self.name, "kind": self.kind} | {count: getattr(self, count) for count in _COUNTS}
+        whole |= {"final": None, "method": self.method, "extremes": None, "energy": self._energy}
+        whole |= {"warnings": self.warnings, "indicators": self.indicators.as_dict() if self.kind == "dynamic" else {}}
         if "" not in own:
-            return found | {"lines": own} | self.hung.nested
+            return whole | {"lines": own} | self.hung.nested
         only = own[""] | {"warnings": self.warnings}
-        return found | only | {"indicators": _merged(only["indicators"], found["indicators"])}
+        return whole | only | {"indicators": _merged(only["indicators"], whole["indicators"])}
 
     @property
     def _worst_residual(self) -> tuple[float, float]:
@@ -128,11 +128,11 @@ class StageTally:
         """Warnings about the stage's results, with numbers and a remedy."""
         only = self.lines.get("")
         of_lines = [f"{name}: {warning}" for name, own in self.lines.items() if name for warning in own.warnings]
-        found = [*of_lines, *(only.doubts() if only else ()), *self.implausible]
+        warnings = [*of_lines, *(only.doubts() if only else ()), *self.implausible]
         if self.kind == "dynamic":
-            found += energy_warnings(self.energy, *self._worst_residual)
-            found += [*(only.warnings_of_steps() if only else ()), *self.indicators.warnings()]
-        return found
+            warnings += energy_warnings(self.energy, *self._worst_residual)
+            warnings += [*(only.warnings_of_steps() if only else ()), *self.indicators.warnings()]
+        return warnings
 
     def state(self) -> Saved:
         counts = {name: getattr(self, name) for name in _COUNTS}
@@ -153,7 +153,7 @@ class StageTally:
 
 def _merged(of_figures: Mapping[str, Any], of_steps: Mapping[str, Any]) -> dict[str, Any]:
     """Indicators of the only line and those of the steps."""
-    found = {**of_figures, **of_steps}
+    merged = {**of_figures, **of_steps}
     if "time_step" in of_steps:
-        found["time_step"] = of_steps["time_step"] | of_figures["time_step"]
-    return found
+        merged["time_step"] = of_steps["time_step"] | of_figures["time_step"]
+    return merged

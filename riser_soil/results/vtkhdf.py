@@ -111,8 +111,8 @@ def cut_back(store: h5py.File, frames: int) -> None:
 
 def times(store: h5py.File) -> Array:
     """(nf,) s."""
-    found: Array = store[ROOT]["Steps"]["Values"][...]
-    return found
+    values: Array = store[ROOT]["Steps"]["Values"][...]
+    return values
 
 
 def mesh(store: h5py.File) -> tuple[Array, IntArray]:
@@ -123,12 +123,12 @@ def mesh(store: h5py.File) -> tuple[Array, IntArray]:
 
 def values_at(store: h5py.File, number: int) -> dict[str, Array]:
     """Values on points and cells of one instant, by their names."""
-    found = {}
+    of_instant = {}
     for kind in ("Point", "Cell"):
         rows = _rows(store[ROOT], kind)
         for name, values in store[ROOT][f"{kind}Data"].items():
-            found[name] = values[number * rows : (number + 1) * rows]
-    return found
+            of_instant[name] = values[number * rows : (number + 1) * rows]
+    return of_instant
 
 
 def _rows(root: h5py.Group, kind: str) -> int:

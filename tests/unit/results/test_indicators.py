@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from riser_soil.core.snapshot import Ledger, StepRecord, StepStatistics
-from riser_soil.results.doubtful_extremes import AT, JUDGED, TimeResolution
+from riser_soil.results.doubtful_extremes import AT, JUDGED
 from riser_soil.results.figures import places_of
 from riser_soil.results.indicators import FigureIndicators, ImpactLoss, StepIndicators
+from riser_soil.results.time_resolution import TimeResolution
 from tests.support.said import line_with
 
 SHARE = 0.3  # of the second difference around an extreme: how far it may be off, as calibrated
