@@ -39,9 +39,10 @@ SMOOTH_MISFIT, STEEP_MISFIT = 0.1, 0.2
 # The same as a turn of the element [rad] that is too small to mind: it strains a pipe's outside by 1e-3 D/L.
 SMALL_TURN = 2e-3
 # The same over the stage's largest tension and the diameter: a moment moves the line in which tension acts by its share
-# of the tension, here by so little of the diameter that the stress in a section changes by less than 1 % (a full round
-# section: 8 M/(T D)). A rope between slow bodies has no other moment.
-SMALL_ARM = 1e-3
+# of the tension, here by so little of the diameter that the stress in a section changes by less than 0.02 % (a full
+# round section: 8 M/(T D)). A taut rope has no larger moment; of a pipe of 10 km that hangs in its weight, whose moment
+# elements of 125 m miss by ten times its size, it is 1e-4.
+SMALL_ARM = 2e-5
 # Compression beyond what elements bear that is too small to mind, as a share of the stage's largest tension.
 SMALL_PUSH = 1e-3
 

@@ -424,13 +424,17 @@ HUNG: dict[str, tuple[float, tuple[float, float, float], str]] = {
     "name", [name if name == "10 km, steep" else pytest.param(name, marks=pytest.mark.verify) for name in HUNG]
 )
 def test_elements_too_long_for_the_moment_are_reported(name: str) -> None:
+    """But for errors that move the line of the top tension by less than 2e-5 of the diameter: in a pipe of 10 km, hung
+    wide, with elements of 125 m 4.5 N m beside 12 MN.
+    """
     length, top, rotation = HUNG[name]
     exact = moment(last_stage(hung(640, length, top, rotation)))
     for elements in (10, 20, 40, 80):
         stage = last_stage(hung(elements, length, top, rotation))
         error, estimate = abs(moment(stage) - exact), stage["indicators"]["bending"]
         print(f"| {name} | {elements} | {error / exact:.2%} | {estimate['moment_error'] / exact:.2%} |")
-        if error > 0.1 * exact:
+        small = 2e-5 * LONG["outer_diameter"] * stage["final"]["end"]["effective_tension"]
+        if error > max(0.1 * exact, small):
             assert estimate["share"] > SMOOTH_MISFIT, elements
             assert lines_with(stage["warnings"], "too long", "bending"), elements
             assert 0.3 * error < estimate["moment_error"] < 10.0 * error, elements
