@@ -30,16 +30,16 @@ class _Pending:
         self.agreeing = False  # whether to leave between two steps alone, all ranks at the same one
         self.latest: Interruption | None = None
 
-    def take(self, number: int, frame: FrameType | None = None) -> None:
+    def receive(self, number: int, frame: FrameType | None = None) -> None:
         again, self.number = self.number != 0, self.number or number
         if not self.busy and (again or not self.agreeing):
-            self.tell()
+            self.interrupt()
 
-    def tell(self, together: bool = False) -> NoReturn:
+    def interrupt(self, together: bool = False) -> NoReturn:
         self.latest, self.number = Interruption(self.number, together), 0
         raise self.latest
 
-    def untell(self) -> None:
+    def restore(self) -> None:
         """An interruption that got lost is raised again at the end of the next block that no signal interrupts."""
         if self.latest is not None:
             self.number, self.latest = self.latest.number, None
@@ -64,7 +64,7 @@ def handling_signals() -> Iterator[None]:
     mine = [number for number in OURS if _is_free(number)]
     if mine:
         _pending.number, _pending.latest = 0, None
-    former = {number: signal.signal(number, _pending.take) for number in mine}
+    former = {number: signal.signal(number, _pending.receive) for number in mine}
     try:
         with unmasked(), _unraisable_kept():
             yield
@@ -92,7 +92,7 @@ def _unraisable_kept() -> Iterator[None]:
 
     def keep(lost: Any) -> None:
         if isinstance(lost.exc_value, Interruption):
-            _pending.untell()
+            _pending.restore()
         else:
             usual(lost)
 
@@ -162,7 +162,7 @@ def uninterrupted() -> Iterator[None]:
     finally:
         _pending.busy -= 1
     if _pending.number and not _pending.busy and not _pending.agreeing:
-        _pending.tell()
+        _pending.interrupt()
 
 
 @contextmanager
@@ -199,4 +199,4 @@ def asked_to_end(comm: Any) -> bool:
 
 def end_together() -> NoReturn:
     """Raises the Interruption that `asked_to_end` has told of."""
-    _pending.tell(together=True)
+    _pending.interrupt(together=True)

@@ -9,7 +9,7 @@ from pathlib import Path
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.checks.check import resolution, wave_theory
-from riser_soil.checks.limits import size_that_fits, tell, tight, too_long
+from riser_soil.checks.limits import announce, size_that_fits, tight, too_long
 from riser_soil.checks.plausibility import physical_warnings, refuse_impossible
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved
@@ -45,7 +45,7 @@ def run(
         saved = last_checkpoint(folder, scene, peaks is not None, comm) if restart else None
         scene = sized(scene)
         size = size_that_fits(scene, folder, comm)
-        tell(size, comm)
+        announce(size, comm)
         of_size = [*tight(size, comm), *too_long(size)]
         refuse_impossible(scene)
         assembly = build(scene, comm)

@@ -68,8 +68,8 @@ def too_long(size: ProblemSize) -> Iterator[str]:
         )
 
 
-def tell(size: ProblemSize, comm: Communicator) -> None:
-    """Tell of a run that lasts a while, before it begins."""
+def announce(size: ProblemSize, comm: Communicator) -> None:
+    """Announce a run that lasts a while, before it begins."""
     if size.seconds > NOTED and comm.rank == 0:
         print(f"this takes about {in_words(size.seconds)}, {size.steps_in_words} of {_parts(size)}", flush=True)
 

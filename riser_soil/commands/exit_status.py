@@ -42,26 +42,26 @@ def expected_errors() -> Iterator[None]:
         with unmasked():
             yield
     except RiserSoilError as err:
-        _tell_once(str(err))
+        _print_once(str(err))
         _end_other_ranks(err.exit_status)
         raise typer.Exit(err.exit_status) from err
     except Interruption as err:
         err.announced = True
         if rank() == 0 or not err.together:
-            _tell_once(str(err))
+            _print_once(str(err))
         if not err.together:
             _leave_other_ranks(err.exit_status)
         raise typer.Exit(err.exit_status) from err
     except ModuleNotFoundError as err:
         if not (way := _way_to(err.name or "")):
             raise
-        _tell_once(f"{err.name}: is needed here and not installed; {way}")
+        _print_once(f"{err.name}: is needed here and not installed; {way}")
         _end_other_ranks(SceneError.exit_status)
         raise typer.Exit(SceneError.exit_status) from err
     except OSError as err:
         if not is_full(err):
             raise
-        _tell_once(f"{err.filename or 'a file'}: cannot be written: {err.strerror}")
+        _print_once(f"{err.filename or 'a file'}: cannot be written: {err.strerror}")
         _end_other_ranks(WriteError.exit_status)
         raise typer.Exit(WriteError.exit_status) from err
     except Exception:
@@ -93,7 +93,7 @@ def _from_environment(*names: str) -> int | None:
     return next((int(os.environ[name]) for name in names if os.environ.get(name, "").isdecimal()), None)
 
 
-def _tell_once(message: str) -> None:
+def _print_once(message: str) -> None:
     """Print an error. As a rule all ranks meet it: the first tells it and ends the job, the others wait."""
     if rank() > 0:
         default_signal_handlers()

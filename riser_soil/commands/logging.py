@@ -86,13 +86,13 @@ class _Lines:
             self._stream.write(text)
         *whole, self._partial = (self._partial + text).split("\n")
         for line in whole:
-            self._take(line)
+            self._write(line)
         return len(text)
 
     def end(self) -> None:
         """Nothing more comes."""
         if self._partial:
-            self._take(self._partial)
+            self._write(self._partial)
         self._stream.flush()
 
     def isatty(self) -> bool:
@@ -101,9 +101,9 @@ class _Lines:
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
 
-    def _take(self, line: str) -> None:
+    def _write(self, line: str) -> None:
         if self._log is not None:
-            self._log.take(line)
+            self._log.write(line)
         if self._keeps and self._keeps(line):
             self._stream.write(f"{line}\n")
 
@@ -119,9 +119,9 @@ class _Log:
             self._file: TextIO | None = file.open("a", encoding="utf-8", buffering=1)
         except OSError as err:
             raise ResultsError(f"--log-file {file}: cannot be written: {err.strerror}; choose another file") from err
-        self.take(f"riser-soil {__version__}: {' '.join(sys.argv[1:])}")
+        self.write(f"riser-soil {__version__}: {' '.join(sys.argv[1:])}")
 
-    def take(self, line: str) -> None:
+    def write(self, line: str) -> None:
         text = _STYLE.sub("", _DRAWN.sub("", line)).rstrip()
         if text and self._file is not None:
             try:

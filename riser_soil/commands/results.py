@@ -67,7 +67,7 @@ def film(
             positive(name, value)
         file = output or Path(f"{folder.resolve().name}.gif")
         with DrawingProgress() as progress:
-            draw(folder, file, stage=stage, period=period, field=field, magnify=magnify, tell=progress.tell)
+            draw(folder, file, stage=stage, period=period, field=field, magnify=magnify, on_progress=progress.show)
         typer.echo(file)
 
 
@@ -102,7 +102,7 @@ def plot(
         with DrawingProgress() as progress:
             for name, run in Run(folder).of_lines.items():
                 place = (output or folder / "plots") / name
-                for file, words in album(run, place, wanted, ending, stage, with_film, progress.tell):
+                for file, words in album(run, place, wanted, ending, stage, with_film, progress.show):
                     print(f"{file}: {words}" if file else words)  # not by click, which the bar can't keep apart
 
 
@@ -164,7 +164,7 @@ def report(
         given = read_report_file(files[0], asked) if files else of_folders(sources, asked)
         file = output or (files[0].with_suffix(".html") if files else Path("report.html"))
         with DrawingProgress() as progress:
-            made = write_report(given, file, progress.tell)
+            made = write_report(given, file, progress.show)
         typer.echo(made)
 
 

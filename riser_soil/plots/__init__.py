@@ -13,7 +13,7 @@ from pathlib import Path
 
 from riser_soil.core.environment import environment_alone
 from riser_soil.errors import ResultsError
-from riser_soil.plots.progress import Tell, silent
+from riser_soil.plots.progress import OnProgress, silent
 from riser_soil.results import Run
 from riser_soil.results.whole_file import written_whole
 
@@ -43,7 +43,7 @@ def film(
     period: float | None = None,
     field: str | None = None,
     magnify: float | None = None,
-    tell: Tell = silent,
+    on_progress: OnProgress = silent,
 ) -> Path:
     """Films the last whole cycle of a dynamic stage: the riser over its soil, coloured by a field, frame by frame; of a
     run without soil the riser's shape, coloured by bending moment.
@@ -51,7 +51,7 @@ def film(
     file: GIF, or MP4 where ffmpeg is installed. stage: by default the last dynamic one. period: s, by default that of
     the stage's motion; without any the whole stage is filmed (without soil: the records around the largest bending
     moment). field: of `riser_soil.plots.film.FIELDS`, by default the
-    settlement. magnify: as of `picture`. tell: hears of each frame.
+    settlement. magnify: as of `picture`. on_progress: hears of each frame.
     Raises ResultsError when the folder holds nothing to film, or drawing fails; a file is then left as it was.
     """
     file = Path(file)
@@ -62,17 +62,17 @@ def film(
         if run.has_soil:
             given = {"--stage": stage, "--period": period, "--field": field, "--magnify": magnify}
             options = [f"{name}={value}" for name, value in given.items() if value is not None]
-            _draw(["film", str(folder), str(part), *options], tell)
+            _draw(["film", str(folder), str(part), *options], on_progress)
         elif field is not None or magnify is not None:
             raise ResultsError(f"{run.place}: the run has no soil, so there is nothing to colour or to magnify")
         else:
             from riser_soil.plots.riser_film import film_riser
 
-            film_riser(run, part, stage, period, tell)
+            film_riser(run, part, stage, period, on_progress)
     return file
 
 
-def _draw(command: list[str], tell: Tell = silent) -> None:
+def _draw(command: list[str], on_progress: OnProgress = silent) -> None:
     """Runs a module of this folder with its arguments; each line that it prints is how many frames are done, and of how
     many.
     """
@@ -83,7 +83,7 @@ def _draw(command: list[str], tell: Tell = silent) -> None:
             assert child.stdout is not None
             for line in child.stdout:
                 done, count = map(int, line.split())
-                tell("film: frames", done, count)
+                on_progress("film: frames", done, count)
         if child.returncode != 0:
             errors.seek(0)
             raise ResultsError(_reason(child.returncode, errors.read()))

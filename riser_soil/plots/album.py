@@ -17,7 +17,7 @@ from riser_soil.errors import ResultsError
 from riser_soil.plots import film, histories, picture
 from riser_soil.plots.bodies import pipe_radius
 from riser_soil.plots.curves import PAGE, STYLE, save, sheet
-from riser_soil.plots.progress import Tell, in_turn, silent
+from riser_soil.plots.progress import OnProgress, in_turn, silent
 from riser_soil.plots.ranges import names, range_sheet
 from riser_soil.plots.shape import seabed_under, snapshots
 from riser_soil.results import Run
@@ -64,13 +64,13 @@ def album(
     ending: str = "png",
     stage: str | None = None,
     with_film: bool = False,
-    tell: Tell = silent,
+    on_progress: OnProgress = silent,
 ) -> Iterator[tuple[Path | None, str]]:
     """Draws pictures into a folder: file by file with its caption, or None and the reason why one is not there.
 
-    what: of GROUPS, or names of pictures; none for all that there is but the film. with_film: the film, too. tell:
-    hears of each picture and frame. Raises ResultsError for unknown names, and where what was asked for by name can't
-    be drawn.
+    what: of GROUPS, or names of pictures; none for all that there is but the film. with_film: the film, too.
+    on_progress: hears of each picture and frame. Raises ResultsError for unknown names, and where what was asked for by
+    name can't be drawn.
     """
     of_stage = stage_records(run, stage)
     there = pictures(of_stage)
@@ -80,14 +80,14 @@ def album(
     curves = {each.name: each for each in there if not what or {each.group, each.name} & set(what)}
     asked = {*what, *(("film",) if with_film else ())}
     alone = [name for name in _ALONE if name in asked or (name in _UNASKED and not what)]
-    for name in in_turn([*curves, *alone], str, tell):
+    for name in in_turn([*curves, *alone], str, on_progress):
         if name in curves:
             file = folder / f"{name}.{ending}"
             with written_whole(file) as part:
                 save(curves[name].draw(), part)
             yield file, curves[name].caption
         else:
-            yield _drawn_alone(name, of_stage, folder / _ALONE[name], name in asked, tell)
+            yield _drawn_alone(name, of_stage, folder / _ALONE[name], name in asked, on_progress)
 
 
 def _check(what: Sequence[str], there: Sequence[Picture]) -> None:
@@ -140,12 +140,14 @@ def when(stage: StageRecords) -> str:
     return f"{stage.name}, {stage.time[0]:.5g} to {stage.time[-1]:.5g} s"
 
 
-def _drawn_alone(name: str, stage: StageRecords, file: Path, asked: bool, tell: Tell) -> tuple[Path | None, str]:
+def _drawn_alone(
+    name: str, stage: StageRecords, file: Path, asked: bool, on_progress: OnProgress
+) -> tuple[Path | None, str]:
     """The picture of the run's end, or the film of a stage; what was asked for must be there."""
     run = stage.run
     try:
         if name == "film":
-            return film(run.place, file, stage=stage.name, tell=tell), f"film: {stage.name}"
+            return film(run.place, file, stage=stage.name, on_progress=on_progress), f"film: {stage.name}"
         return picture(run.place, file), "the touchdown zone at the run's end"
     except ResultsError as err:
         if asked:

@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
 from rich.progress import Progress as Bar
 
-Tell = Callable[[str, int, int], None]
+OnProgress = Callable[[str, int, int], None]
 """Takes the words for what is drawn now, how many pieces are done, and of how many."""
 
 Piece = TypeVar("Piece")
@@ -21,13 +21,13 @@ def silent(words: str, done: int, count: int) -> None:
     """Progress that nobody follows."""
 
 
-def in_turn(pieces: Sequence[Piece], words: Callable[[Piece], str], tell: Tell) -> Iterator[Piece]:
+def in_turn(pieces: Sequence[Piece], words: Callable[[Piece], str], on_progress: OnProgress) -> Iterator[Piece]:
     """The pieces, each reported before it is drawn, and the last one after it, too."""
     for done, piece in enumerate(pieces):
-        tell(words(piece), done, len(pieces))
+        on_progress(words(piece), done, len(pieces))
         yield piece
     if pieces:
-        tell(words(pieces[-1]), len(pieces), len(pieces))
+        on_progress(words(pieces[-1]), len(pieces), len(pieces))
 
 
 class DrawingProgress:
@@ -56,8 +56,8 @@ class DrawingProgress:
     ) -> None:
         self._bar.stop()
 
-    def tell(self, words: str, done: int, count: int) -> None:
-        """Show what is drawn now, a `Tell`; the time left begins anew with each number of pieces."""
+    def show(self, words: str, done: int, count: int) -> None:
+        """Show what is drawn now, a `OnProgress`; the time left begins anew with each number of pieces."""
         if count != self._count:
             self._bar.reset(self._task, total=count, description=words, visible=True)
             self._count = count

@@ -18,7 +18,7 @@ from PIL import Image
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import ResultsError
 from riser_soil.plots.curves import sheet
-from riser_soil.plots.progress import Tell, in_turn, silent
+from riser_soil.plots.progress import OnProgress, in_turn, silent
 from riser_soil.plots.scales import colour_scale
 from riser_soil.plots.shape import filmed_records, seabed_under
 from riser_soil.results import Run
@@ -31,10 +31,10 @@ _INCHES, _DPI = (9.6, 5.4), 100
 
 
 def film_riser(
-    run: Run, file: Path, stage: str | None = None, period: float | None = None, tell: Tell = silent
+    run: Run, file: Path, stage: str | None = None, period: float | None = None, on_progress: OnProgress = silent
 ) -> None:
     """The last whole cycle of a stage along t, by default the last one; of motion without one period the records around
-    the largest moment. tell: hears of each frame.
+    the largest moment. on_progress: hears of each frame.
     """
     number = timed_stage(run, stage)
     of_stage = stage_records(run, run.stage_names[number])
@@ -44,10 +44,10 @@ def film_riser(
             f'{run.place}: stage "{of_stage.name}" has {len(records)} record(s) to film, and a film takes two; '
             "shorten output.interval of the scene and run again"
         )
-    write_film(file, _pictures(run, records, tell), float(np.diff(run.time[records]).mean()))
+    write_film(file, _pictures(run, records, on_progress), float(np.diff(run.time[records]).mean()))
 
 
-def _pictures(run: Run, records: IntArray, tell: Tell) -> Iterator[Array]:
+def _pictures(run: Run, records: IntArray, on_progress: OnProgress) -> Iterator[Array]:
     """Frames (height, width, 3), bytes of red, green and blue."""
     position = run["position"]
     moment = 1e-3 * (run["bending_moment"] if "bending_moment" in run.variables else np.zeros(position.shape[:2]))
@@ -67,7 +67,7 @@ def _pictures(run: Run, records: IntArray, tell: Tell) -> Iterator[Array]:
     line = LineCollection([], cmap="viridis", linewidth=4.0, clim=(0.0, top))
     axes.add_collection(line)
     figure.colorbar(line, ax=axes, label="bending moment [kN m]")
-    for n in in_turn(records.tolist(), lambda _: "film: frames", tell):
+    for n in in_turn(records.tolist(), lambda _: "film: frames", on_progress):
         points = np.column_stack([x[n], z[n]])
         line.set_segments(list(np.stack([points[:-1], points[1:]], axis=1)))
         line.set_array(0.5 * (moment[n, :-1] + moment[n, 1:]))

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from riser_soil import __version__
 from riser_soil.errors import ResultsError
-from riser_soil.plots.progress import Tell, silent
+from riser_soil.plots.progress import OnProgress, silent
 from riser_soil.report import (
     basis,
     code_checks,
@@ -51,8 +51,8 @@ CHAPTERS: tuple[Chapter, ...] = (
 )
 
 
-def write_report(given: ReportFile, file: Path, tell: Tell = silent) -> Path:
-    """Write a report, in the format of the file's ending. tell: hears of each picture.
+def write_report(given: ReportFile, file: Path, on_progress: OnProgress = silent) -> Path:
+    """Write a report, in the format of the file's ending. on_progress: hears of each picture.
 
     Raises ResultsError where a folder holds no results, nothing was recorded, or the ending is of no format; the file
     is then as it was.
@@ -64,7 +64,7 @@ def write_report(given: ReportFile, file: Path, tell: Tell = silent) -> Path:
 
     def began(item: PictureBlock) -> None:
         nonlocal begun
-        tell(item.caption.partition(":")[0], begun, count)
+        on_progress(item.caption.partition(":")[0], begun, count)
         begun += 1
 
     with written_whole(file) as part:

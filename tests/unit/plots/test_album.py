@@ -203,7 +203,7 @@ def test_a_film_is_drawn_where_it_is_asked_for(run: Run, tmp_path: Path, monkeyp
 
 def test_frames_of_a_film_and_pictures_of_a_report_are_reported(run: Run, tmp_path: Path) -> None:
     progress: list[tuple[str, int, int]] = []
-    film(run.folder, tmp_path / "riser.gif", period=0.3, tell=lambda *given: progress.append(given))
+    film(run.folder, tmp_path / "riser.gif", period=0.3, on_progress=lambda *given: progress.append(given))
     assert progress == [("film: frames", n, 4) for n in range(5)]
     progress.clear()
     page = write_report(of_folders([run.folder], {}), tmp_path / "report.html", lambda *given: progress.append(given))
@@ -215,12 +215,12 @@ def test_frames_of_a_film_and_pictures_of_a_report_are_reported(run: Run, tmp_pa
 def test_progress_of_drawing_shows_number_and_per_cent() -> None:
     console = Console(force_terminal=True, width=120, record=True, file=io.StringIO())
     with DrawingProgress(console) as progress:
-        progress.tell("shape", 3, 12)
+        progress.show("shape", 3, 12)
     text = console.export_text()
     for words in ("shape", "3/12", "25%"):
         assert words in text
     with DrawingProgress(Console(file=io.StringIO())) as progress:
-        progress.tell("shape", 3, 12)
+        progress.show("shape", 3, 12)
 
 
 @pytest.mark.parametrize(("ending", "begins"), [("svg", b"<?xml"), ("pdf", b"%PDF")])
