@@ -25,11 +25,11 @@ class Reference:
         self._accident = None if accidental is None else names.index(accidental)
         self._kinds, self._names = [kind for _, kind in stages], names
         self._stage, self._given = 0, False
-        self._found: dict[str, Array] = {}  # (3, nn) functional, accidental
+        self._split: dict[str, Array] = {}  # (3, nn) functional, accidental
 
     def begin_from(self, functional: SectionEffects) -> None:
         """Begin with functional effects (nn,) from elsewhere: no stage of this run brings them about."""
-        self._found["functional"], self._given = np.stack(functional), True
+        self._split["functional"], self._given = np.stack(functional), True
 
     def begin_stage(self, name: str) -> None:
         self._stage = self._names.index(name)
@@ -39,14 +39,14 @@ class Reference:
         stacked, zero = np.stack(now), np.zeros_like(now.tension)
         none = SectionEffects(zero, zero, zero)
         if self._is_functional:
-            self._found["functional"] = stacked[:, -1].copy()
+            self._split["functional"] = stacked[:, -1].copy()
             return LoadEffects(now, none, none)
-        functional = self._found.setdefault("functional", stacked[:, 0].copy())[:, None]
+        functional = self._split.setdefault("functional", stacked[:, 0].copy())[:, None]
         added = stacked - functional
         if self._stage == self._accident:
-            self._found["accidental"] = added[:, -1].copy()
+            self._split["accidental"] = added[:, -1].copy()
             return LoadEffects(_effects(functional + 0.0 * added), none, _effects(added))
-        accidental = self._found.get("accidental", np.zeros_like(functional[:, 0]))[:, None]
+        accidental = self._split.get("accidental", np.zeros_like(functional[:, 0]))[:, None]
         return LoadEffects(*(_effects(each + 0.0 * added) for each in (functional, added - accidental, accidental)))
 
     @property
@@ -56,10 +56,10 @@ class Reference:
         return not self._given and self._kinds[self._stage] == "static"
 
     def state(self) -> Saved:
-        return dict(self._found)
+        return dict(self._split)
 
     def restore(self, saved: Saved) -> None:
-        self._found = {name: values.copy() for name, values in saved.items()}
+        self._split = {name: values.copy() for name, values in saved.items()}
 
 
 def _effects(rows: Array) -> SectionEffects:

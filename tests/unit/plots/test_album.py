@@ -185,7 +185,7 @@ def test_all_pictures_of_a_riser_alone(run: Run, tmp_path: Path) -> None:
 def test_a_film_is_drawn_where_it_is_asked_for(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """`plot` alone draws all else; each picture is reported before it is drawn, and the last one after it."""
     progress: list[tuple[str, int, int]] = []
-    monkeypatch.setattr(DrawingProgress, "tell", lambda _, *given: progress.append(given))
+    monkeypatch.setattr(DrawingProgress, "show", lambda _, *given: progress.append(given))
     monkeypatch.setattr("riser_soil.plots.album.picture", lambda _, file: Path(file).touch())
     monkeypatch.setattr("riser_soil.plots.album.film", lambda _, file, **given: Path(file).touch())
     monkeypatch.setattr("riser_soil.plots.album.save", lambda _, file: file.touch())

@@ -44,7 +44,7 @@ def frames(gif: Path) -> list[np.ndarray]:
 
 def test_a_film_shows_every_frame_of_the_stage(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     progress: list[tuple[str, int, int]] = []
-    monkeypatch.setattr(DrawingProgress, "tell", lambda _, *given: progress.append(given))
+    monkeypatch.setattr(DrawingProgress, "show", lambda _, *given: progress.append(given))
     done = CliRunner().invoke(app, ["film", str(folder), "-o", str(folder / "film.gif"), "--stage", "heave"])
     assert (done.exit_code, done.output.strip()) == (0, str(folder / "film.gif"))
     images = frames(folder / "film.gif")
