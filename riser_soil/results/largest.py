@@ -4,6 +4,9 @@ checks, bodies, joints, soil, and of what must stay small for a result to be pla
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
 import numpy as np
 
 from riser_soil.core.arrays import Array, as_list
@@ -62,6 +65,35 @@ def largest_along(values: Array, *beside: Array) -> list[Array]:
     """
     at = np.where(np.isnan(values), -np.inf, values).argmax(axis=1)[:, None]
     return [np.take_along_axis(np.broadcast_to(each, values.shape), at, axis=1) for each in (values, *beside)]
+
+
+class LargestAt(NamedTuple):
+    """A largest value, its time [s] or load factor, and its arc length [m]; nan for the places of none."""
+
+    value: float
+    t: float
+    arc: float
+
+
+class LargestAlong:
+    """Largest values along a riser so far, each > 0, by the names of what they are; 0 before the first."""
+
+    def __init__(self, names: Sequence[str]) -> None:
+        self._largest = {name: Largest(beside=1, floor=0.0) for name in names}
+
+    def __getitem__(self, name: str) -> LargestAt:
+        return LargestAt(*self._largest[name].of())
+
+    def update(self, times: Array, arc: Array, along: Mapping[str, Array]) -> None:
+        """Take in values (nt, n) by name at times (nt,) and arc lengths (n,)."""
+        for name, values in along.items():
+            self._largest[name].update(times, *largest_along(values, arc))
+
+    def state(self) -> Saved:
+        return gathered(self._largest)
+
+    def restore(self, saved: Saved) -> None:
+        restore_all(self._largest, saved)
 
 
 class Range:

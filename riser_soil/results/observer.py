@@ -16,9 +16,9 @@ import numpy as np
 
 from riser_soil.assembly import Assembly
 from riser_soil.checks.inventory import inventory
-from riser_soil.core.arrays import Array, as_list
+from riser_soil.core.arrays import Array
 from riser_soil.core.communicator import Communicator
-from riser_soil.core.part import Energy, State
+from riser_soil.core.part import Energy
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.core.snapshot import (
     Records,
@@ -35,12 +35,13 @@ from riser_soil.results.functional_run import line_checks
 from riser_soil.results.hung_figures import hung_reader, looked_at
 from riser_soil.results.instants import InstantReader, Look
 from riser_soil.results.peaks import RunPeaks
-from riser_soil.results.plausibility import BoundaryStress, Plausibility, PressedSoil, boundary_stress
+from riser_soil.results.plausibility import Plausibility
 from riser_soil.results.record import Keeping, Recorder
 from riser_soil.results.run_clock import RunClock
 from riser_soil.results.run_facts import facts_of, known_fields
 from riser_soil.results.schedule import DueOutputs, Schedule
 from riser_soil.results.screen import Progress, print_summary
+from riser_soil.results.soil_plausibility import PressedSoil, SoilPlausibility
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.output import Checkpoint
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
@@ -53,15 +54,15 @@ MOST_STEPS, MOST_NUMBERS = 64, 1 << 20  # in the buffer, before it is written
 class BufferedStep(NamedTuple):
     """An accepted step as it waits in the buffer: its record, what is due to be written of it, and its state.
 
-    looks: state of each line, by name; hung: values of bodies and joints; pressed: the soil under lines that lie on
-    some, where the step is recorded; soil: its fields where these are due.
+    looks: state of each line, by name; hung: values of bodies and joints; pressed: the soil under the riser, if
+    any, where the step is recorded; soil: its fields where these are due.
     """
 
     record: StepRecord
     due: DueOutputs
     looks: dict[str, Look]
     hung: dict[str, Array]
-    pressed: dict[str, PressedSoil]
+    pressed: PressedSoil | None
     soil: SoilSnapshot | None
 
 
@@ -86,6 +87,7 @@ class Observer:
         self._hung = hung_reader(assembly)
         self._buffer: list[BufferedStep] = []  # steps not yet written
         self._plausibility = {name: Plausibility(line) for name, line in lines.items()}
+        self._soil_plausibility = _soil_plausibility(assembly)
         self._inventory = inventory(assembly)
         self._checkpoints = CheckpointSchedule(_checkpoint_settings(assembly), assembly.comm)
         self._about = about(assembly) if recorder is not None and _checkpoint_settings(assembly) is not None else None
@@ -151,6 +153,8 @@ class Observer:
             reader.begin_stage(stage.name)
         for each in self._plausibility.values():
             each.begin_stage(stage)
+        if self._soil_plausibility is not None:
+            self._soil_plausibility.begin_stage(stage)
 
     def _show_progress(self, stage: Stage) -> None:
         self._progress.begin_stage(stage.name, stage.kind, stage.end)
@@ -172,8 +176,8 @@ class Observer:
         soil = self._soil() if due.pictures or not isinstance(self._stage, DynamicStage) else None
         change = self._balance.add(stepper.energy, step)
         self._progress.update(step.t, step.dt, step.solution.iterations)
-        if last and self._assembly.soil is not None:
-            self._plausibility[self._assembly.name_on_soil].look_around(self._boundary())
+        if last and self._soil_plausibility is not None:
+            self._soil_plausibility.look_around()
         if self._recorder is not None:
             iterations = step.solution.iterations + self._relaxed
             health = StepStatistics(iterations, step.dt, change, step.cuts, stepper.local_error)
@@ -181,7 +185,8 @@ class Observer:
             at_rest = due.series and isinstance(self._stage, StaticStage)
             looks = {name: reader.look(stepper, at_rest) for name, reader in self._instants.items()}
             hung = looked_at(self._hung, stepper.now)
-            pressed = self._pressed_soil(stepper.now) if due.series else {}
+            under = self._soil_plausibility if due.series else None
+            pressed = None if under is None else under.pressed(stepper.now)
             self._buffer.append(BufferedStep(record, due, looks, hung, pressed, soil))
             full = len(self._buffer) >= self._buffer_size or soil is not None  # whose fields are not kept for long
             if last or full or self._recorder.flush_is_due:
@@ -224,21 +229,22 @@ class Observer:
             if pictured:
                 plausibility.look_closely(times[pictured], records[name].at(pictured))
             plausibility.look(times[recorded], records[name].at(recorded))
-            for t, n in zip(as_list(times[recorded]), recorded, strict=True):
-                if name in steps[n].pressed:
-                    plausibility.look_at_soil(t, steps[n].pressed[name], records[name].at(n))
             tally = stage.lines[name]
             tally.implausible, tally.indicators.bending = plausibility.warnings(), plausibility.bending()
+        if self._soil_plausibility is not None:
+            name = self._assembly.name_on_soil
+            for n in recorded:
+                if (pressed := steps[n].pressed) is not None:
+                    self._soil_plausibility.look(float(times[n]), pressed, records[name].at(n))
+            stage.lines[name].implausible += self._soil_plausibility.warnings()
         if self._hung is not None:
             stage.implausible = tuple(self._hung.warnings(stage.hung.nested))
 
-    def _pressed_soil(self, state: State) -> dict[str, PressedSoil]:
-        """Soil under lines that lie on some, by their names."""
-        each = {name: plausibility.pressed_soil(state) for name, plausibility in self._plausibility.items()}
-        return {name: pressed for name, pressed in each.items() if pressed is not None}
-
     def checkpoint(self, gather: Callable[[], Saved], last: bool, leaving: bool) -> None:
-        """Write the state after a recorded step, where it is due; collective. Arguments as of `CheckpointWriter`."""
+        """Write the state after a recorded step, where it is due, see `CheckpointSchedule.due`; collective.
+
+        gather: this rank's state.
+        """
         ends_run = last and self._stage is self._assembly.scene.stages[-1]
         if _checkpoint_settings(self._assembly) is not None:
             leave_between_steps()
@@ -270,13 +276,6 @@ class Observer:
         """Fields of the soil; collective where there is soil."""
         soil = self._assembly.soil
         return None if soil is None else soil.recovered().output_fields()
-
-    def _boundary(self) -> BoundaryStress | None:
-        """Change of stress at the soil's boundaries; collective where there is soil."""
-        lying = self._assembly.line_on_soil
-        if lying is None or lying.soil is None:
-            return None
-        return boundary_stress(lying.soil.recovered(), int(np.abs(lying.line.direction[:2]).argmin()))
 
     def laid(self, slack: float, steps: int, relaxations: int) -> None:
         """Record that a slack or steep riser's end was moved to its place, from `slack` [m] beyond it."""
@@ -334,7 +333,12 @@ class Observer:
         for name, reader in self._instants.items():
             of_line: dict[str, Stateful] = {"instants": reader, "plausibility": self._plausibility[name]}
             owners |= {f"{kind}/{name}" if name else kind: owner for kind, owner in of_line.items()}
-        return owners
+        return owners if self._soil_plausibility is None else owners | {"soil plausibility": self._soil_plausibility}
+
+
+def _soil_plausibility(assembly: Assembly) -> SoilPlausibility | None:
+    lying = assembly.line_on_soil
+    return None if lying is None or lying.soil is None else SoilPlausibility(lying, lying.soil)
 
 
 def _checkpoint_settings(assembly: Assembly) -> Checkpoint | None:

@@ -13,6 +13,7 @@ import pytest
 from riser_soil.assembly import Assembly
 from riser_soil.core.snapshot import Record
 from riser_soil.results.plausibility import Plausibility
+from riser_soil.results.soil_plausibility import PressedSoil, SoilPlausibility
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.whole_run import run
 from tests.support.driven_stage import built
@@ -170,6 +171,27 @@ def test_soil_that_is_never_touched_is_reported_after_the_last_stage(tmp_path: P
     assert lay == []
     warning = line_with(moved, "in no stage", "touch the soil", "18 to 21 m", "-1 to 1 m")
     assert "touches down at [6" in warning
+
+
+def test_what_is_doubtful_about_soil_is_known_after_a_restart() -> None:
+    """Pressed with 1 MN/m, stretched to twice its area, and left by 2 m at an instant; calm at the next."""
+    assembly = built(touchdown(LAY, heave(0.2)))
+    riser, soil = assembly.riser, assembly.riser.soil
+    assert soil is not None
+    high, nodes = soil.whole.grid.high, riser.line.nodes
+    begun, again = SoilPlausibility(riser, soil), SoilPlausibility(riser, soil)
+    for each in (begun, again):
+        each.begin_stage(assembly.scene.stages[1])
+    for t, force, stretch, beyond in ((0.1, 1.0e6, 2.0, 2.0), (0.2, 10.0, 1.0, -1.0)):
+        values = {"touchdown_arc": np.array(7.5), "touchdown_position": high + np.array([beyond, -0.5 * high[1], 0.0])}
+        begun.look(t, PressedSoil(np.full(nodes, force), stretch), Record(riser.line.arc, values))
+    warnings = begun.warnings()
+    assert len(warnings) == 3
+    line_with(warnings, "stretched to 2 times", "0.1 s")
+    line_with(warnings, "the soil bears 1e+06 N/m", "0.1 s")
+    line_with(warnings, "left the soil's block", "2 m beyond", "0.1 s", "arc 7.5 m")
+    again.restore(begun.state())
+    assert again.warnings() == warnings
 
 
 def test_soil_that_is_touched_is_not_reported(tmp_path: Path) -> None:
