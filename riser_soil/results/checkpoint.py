@@ -46,7 +46,7 @@ class CheckpointSchedule:
 
 
 def about(assembly: Assembly) -> About:
-    """What the checkpoints of a run are of; to be asked as it begins: files that the scene names may change later."""
+    """Version, ranks and scene of a run, for its checkpoints; asked at its start, as files of the scene may change."""
     return About(__version__, assembly.comm.size, identity_of(assembly.scene))
 
 

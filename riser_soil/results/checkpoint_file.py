@@ -26,8 +26,9 @@ _ABOUT = "about"
 
 @dataclass(frozen=True)
 class About:
-    """What a checkpoint is of. scene: of `identity_of`, with sizes in numbers; ended: name of the stage whose end it is
-    the state at, None on a stage's way.
+    """Run and place in it of a checkpoint.
+
+    scene: from `identity_of`, with sizes in numbers; ended: name of the stage that ends with it, None within a stage.
     """
 
     version: str
@@ -39,7 +40,7 @@ class About:
 
 @dataclass(frozen=True, eq=False)
 class CheckpointFile:
-    """What was read of one: shares[n] is the state of rank n."""
+    """A checkpoint that was read: shares[n] is the state of rank n."""
 
     about: About
     shares: list[Saved]

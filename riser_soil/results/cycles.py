@@ -65,7 +65,7 @@ def period_of(run: Run, stage: int) -> float:
 
 
 def _periods(piece: Any) -> Iterator[float]:
-    """All that goes by the name period in a piece of a scene."""
+    """All values of keys named period in a piece of a scene."""
     if isinstance(piece, list):
         for item in piece:
             yield from _periods(item)
@@ -133,7 +133,7 @@ def secant_stiffness(
 
 
 def write_csv(stiffness: SecantStiffness, file: TextIO) -> None:
-    """One line for each arc length and cycle, cycles counted from 1."""
+    """Write a table with one line for each arc length and cycle, cycles counted from 1."""
     rows = csv.writer(file, lineterminator="\n")
     rows.writerow(COLUMNS)
     for a, arc in enumerate(stiffness.arc):

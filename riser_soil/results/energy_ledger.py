@@ -84,7 +84,7 @@ def _by_kind(turned: Mapping[str, Work]) -> list[tuple[str, Work]]:
 
 
 def _losses(name: str, work: Work) -> list[tuple[str, float]]:
-    """What a part has dissipated, by account."""
+    """Energy [J] that a part has dissipated, by account."""
     if name not in SPLIT:
         return [(name, work.dissipated)]
     own, of_scheme = SPLIT[name]

@@ -72,7 +72,7 @@ def _arc(figure: Figure, value: Any, arc: Array) -> Any:
 
 
 def places_of(name: str) -> slice:
-    """Where a figure is in a packed vector."""
+    """Numbers of a figure in a packed vector."""
     return _NUMBERS[name]
 
 

@@ -174,7 +174,7 @@ class _MemoryFile:
         self._added = bytearray()
 
     def changes(self) -> dict[int, bytes]:
-        """What was written to, by its offset, up to the file's end."""
+        """Bytes that were written to, by their offset, up to the file's end."""
         pages = {number * _PAGE: page[: self._of_base - number * _PAGE] for number, page in self._pages.items()}
         parts = sorted((pages | {self._of_base: self._added}).items())
         return {at: bytes(part[: self.size - at]) for at, part in parts if at < self.size}
@@ -187,7 +187,7 @@ class _MemoryFile:
         return self._at
 
     def flush(self) -> None:
-        """Nothing is on its way: the changes are taken as they are."""
+        """Do nothing: `changes` has all that was written."""
 
     def truncate(self, size: int) -> int:
         self.size = size

@@ -59,7 +59,7 @@ class HungReader:
 
     @property
     def variables(self) -> dict[str, Variable]:
-        """By path in results.nc."""
+        """Variables of bodies, joints and clearances by path in results.nc."""
         variables: dict[str, Variable] = {}
         for name, body in self._bodies.items():
             known = _OF_BODY if body.turns else {key: _OF_BODY[key] for key in ("position", "velocity")}

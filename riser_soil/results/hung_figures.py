@@ -1,4 +1,4 @@
-"""Figures of bodies, joints and clearances over a stage, at its end and extremes with times; who looks at them."""
+"""Figures of bodies, joints and clearances over a stage, at its end and extremes with times; their reader."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 
 class HungExtremes:
-    """Extremes of a stage."""
+    """Extremes of bodies, joints and clearances in a stage so far, and their values at its last instant."""
 
     def __init__(self) -> None:
         self._ranges: dict[str, Range] = {}
         self._final: dict[str, Array] = {}
 
     def update(self, times: Array, rows: Mapping[str, Array]) -> None:
-        """Take note of values by path, (nt,) or (nt, 3), at times (nt,) [s] (static stages: load factor)."""
+        """Take in values by path, (nt,) or (nt, 3), at times (nt,) [s] (static stages: load factor)."""
         for name, values in rows.items():
             columns = values.reshape(len(values), -1)
             self._ranges.setdefault(name, Range(columns.shape[1])).update(times, columns)
@@ -55,7 +55,7 @@ class HungExtremes:
 
 
 def hung_reader(assembly: Assembly) -> HungReader | None:
-    """None of a scene with one riser."""
+    """Reader of bodies, joints and clearances; None in a scene of one riser."""
     if not assembly.scene.lines:
         return None
     from riser_soil.results.hung import HungReader

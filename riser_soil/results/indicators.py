@@ -114,7 +114,7 @@ class StepIndicators:
         }
 
     def warnings(self) -> Iterator[str]:
-        """With numbers and a remedy."""
+        """Warnings of a dynamic stage, with numbers and a remedy."""
         yield from self._misplaced()
         yield from self._lost_in_impact()
 

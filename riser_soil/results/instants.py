@@ -61,7 +61,7 @@ class InstantReader:
             self._checks.begin_stage(name)
 
     def look(self, stepper: TimeStepper, lay_sections: bool = False) -> Look:
-        """At the accepted state.
+        """Look at the accepted state.
 
         lay_sections: where the riser lies now; they are laid anyway as long as they are nowhere.
         """

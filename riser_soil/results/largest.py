@@ -107,13 +107,13 @@ class Range:
         self._most.update(times, values, *beside)
 
     def columns(self) -> dict[str, Array]:
-        """Each (n,), by the names that they have in summary.json."""
+        """Extremes and their times, each (n,), by their names in summary.json."""
         least, most = -self._least.values, self._most.values
         return {"min": least, "max": most, "t_min": self._least.times, "t_max": self._most.times}
 
     @property
     def beside(self) -> dict[str, Array]:
-        """Each (m, n)."""
+        """What belongs to the least and the largest values, each (m, n)."""
         return {"min": self._least.beside, "max": self._most.beside}
 
     def state(self) -> Saved:

@@ -44,7 +44,7 @@ class LineTally:
         self.code.update(times, record)
 
     def as_dict(self, stepped: bool) -> dict[str, Any]:
-        """What the summary has of it; stepped: whether the stage has had a step."""
+        """The line's share of the summary. stepped: whether the stage has had a step."""
         known: dict[str, Any] = {
             "final": final_state(self.extremes.latest) if stepped else None,
             "extremes": self.extremes.nested() if stepped else None,
@@ -56,7 +56,7 @@ class LineTally:
 
     @property
     def warnings(self) -> list[str]:
-        """With numbers and a remedy."""
+        """Warnings about the line's results, with numbers and a remedy."""
         return [*self.doubts(), *self.warnings_of_steps()]
 
     def doubts(self) -> Iterator[str]:

@@ -90,7 +90,7 @@ def group(line: str) -> str:
 
 
 def _in_group(variable: Variable, path: str) -> Variable:
-    """With the line's own arc lengths."""
+    """The variable along a line, with that line's own arc lengths."""
     return replace(variable, dims=tuple(f"{path}arc" if dim == "arc" else dim for dim in variable.dims))
 
 
@@ -197,7 +197,7 @@ class SeriesFile:
         return content.getvalue()
 
     def state(self) -> Saved:
-        """What tells the rows to come apart, and their number; rows themselves are the file's."""
+        """Numbers of rows and names of stages so far; rows themselves are the file's."""
         counts = {"records": np.array(self._records), "steps": np.array(self._steps)}
         return counts | {"stages": packed(self._stages)}
 
@@ -246,7 +246,7 @@ def _wanted(fields: tuple[str, ...]) -> list[tuple[str, Callable[[Record], Any]]
 
 
 def step_rows(steps: Sequence[StepRecord], accounts: Collection[str]) -> dict[str, list[float]]:
-    """By the names of HEALTH and the ledger's accounts; what a step has not booked is 0."""
+    """Rows of steps by the names of HEALTH and the ledger's accounts; an account that a step has not booked on is 0."""
     booked = [_booked(step.ledger) for step in steps]
     return {
         **{output.name: [output.value(step) for step in steps] for output in OF_STEP},

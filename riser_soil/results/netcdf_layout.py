@@ -30,7 +30,7 @@ class Variable:
 
     @property
     def attributes(self) -> dict[str, str]:
-        """Those that are not empty."""
+        """Attributes of the variable that are not empty."""
         words = {"units": self.units, "long_name": self.long_name, "sign_convention": self.sign}
         return {name: text for name, text in words.items() if text}
 
@@ -58,7 +58,7 @@ def lay_out(file: h5py.File, sizes: Mapping[str, int | None], variables: Mapping
 
 
 def values_in(variable: Variable, sizes: Mapping[str, int | None]) -> int:
-    """How many numbers one row of a variable holds."""
+    """Count of numbers in one row of a variable."""
     return math.prod(sizes[dim] or 0 for dim in variable.dims[1:])
 
 

@@ -311,7 +311,7 @@ class Observer:
             print_summary(self._recorder.summary.as_dict())
 
     def state(self) -> Saved:
-        """What the observer resumes from, after the buffer is written."""
+        """State to resume from, after the buffer is written."""
         self.flush()
         stage = self._assembly.scene.stages.index(self._stage)
         return gathered(self._owners) | {"stage": np.array(stage), "relaxed": np.array(self._relaxed)}

@@ -118,12 +118,13 @@ def _refuse_foreign(path: Path) -> None:
 
 
 def _owner(path: Path) -> Callable[[Path], bool]:
-    """What knows files of a name."""
+    """Test of a file by its name: whether this program has written it."""
     return _OWN.get(path.name) or (_own_xdmf if path.suffix == ".xdmf" else _own_numbers)
 
 
 def _own_scene(path: Path) -> bool:
-    """By its seal. Earlier versions had none: theirs is older than the results beside it, if it has not been changed.
+    """Whether this program has written the scene, by its seal. Earlier versions had none: their scene is older than the
+    results beside it, if it has not been changed.
     """
     text = path.read_bytes()
     if seal := _SEALED.match(text):

@@ -74,7 +74,7 @@ class StagePeaks:
         self._follow(times, rows, with_least_between_nodes(record, rows))
 
     def begin(self, before: StagePeaks) -> None:
-        """With the end of the stage before."""
+        """Begin with the last instant of the stage before."""
         self._follow([0.0], before.sampled.latest[None], before._last[-1][None])
 
     def _follow(self, times: Sequence[float], sampled: Array, peaked: Array) -> None:
@@ -106,7 +106,7 @@ class StagePeaks:
             yield self._t[-2], top
 
     def _at_edges(self) -> None:
-        """On the line from the step before to this one, where one window ends and the next begins: long steps miss no
+        """Take in figures where one window ends and the next begins, linear between two steps: long steps miss no
         more of a window than short ones.
         """
         for n in range(self._window(self._t[-2]), self._window(self._t[-1])) if len(self._t) > 1 else ():
@@ -140,7 +140,7 @@ class StagePeaks:
         return bool(np.ptp(np.diff(self._t)) <= UNEVEN * (self._t[-1] - self._t[0]))
 
     def _smooth_to_the_end(self) -> Extremes:
-        """With the last two steps, whose ringing is that of the five."""
+        """Extremes without ringing up to the last step: the last two steps ring as the five do."""
         ended = Extremes()
         ended.restore(self.smooth.state())
         for n in (1, 2) if self._even else ():

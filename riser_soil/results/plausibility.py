@@ -95,7 +95,7 @@ class Plausibility:
         return max(misfit.value, self._worst["moment"].value)
 
     def warnings(self) -> tuple[str, ...]:
-        """With numbers and a remedy."""
+        """Warnings about the line's results, with numbers and a remedy."""
         return (*self._strains(), *self._too_long_for_bending(), *self._compressed())
 
     def _strains(self) -> Iterator[str]:
@@ -155,5 +155,5 @@ class Plausibility:
         return self._worst.state()
 
     def restore(self, saved: Saved) -> None:
-        """In the stage that has begun."""
+        """Resume in the stage that has begun."""
         self._worst.restore(saved)

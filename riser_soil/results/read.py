@@ -92,7 +92,7 @@ class Run:
 
     @property
     def of_lines(self) -> dict[str, Run]:
-        """Each line's, by name; of a run of one riser itself, by ""."""
+        """Results of each line, by name; a run of one riser itself, by ""."""
         return {"": self} if self._group or not self.lines else {name: self.of_line(name) for name in self.lines}
 
     def require_one_line(self, wanted: str) -> None:
@@ -146,7 +146,7 @@ class Run:
         return units
 
     def _path_of(self, file: h5py.File, name: str) -> str | None:
-        """Where a variable is: the line's own, else the run's; None where there is none."""
+        """Path of a variable: the line's own, else the run's; None where there is none."""
         paths = dict.fromkeys((f"{self._group}{name}", name))
         return next((path for path in paths if isinstance(file.get(path), h5py.Dataset)), None)
 
@@ -218,7 +218,7 @@ class Run:
 
     @cached_property
     def time(self) -> Array:
-        """(nt,) s, total simulated time."""
+        """Total simulated time (nt,) [s] of the records."""
         return self["time"]
 
     @cached_property
@@ -233,7 +233,7 @@ class Run:
 
     @cached_property
     def soil_times(self) -> Array:
-        """(nf,) s, times of the soil's frames."""
+        """Times (nf,) [s] of the soil's frames."""
         if not self.has_soil:
             raise ResultsError(f"{self.place}: has no soil: no {run_folder.SOIL_NUMBERS}")
         with self._open(run_folder.SOIL_NUMBERS) as store:
@@ -266,7 +266,7 @@ def _stage_of_line(stage: dict[str, Any], line: str) -> dict[str, Any]:
 
 
 def load(path: Path, group: str = "") -> xr.Dataset:
-    """All that is in the file, which is free again then, and in the group of a line.
+    """The dataset of a file, which is free again then, and of the group of a line in it.
 
     Raises OSError or ValueError where it can't be read.
 

@@ -77,8 +77,18 @@ class Recorder:
         self._fields = fields
         left_out = {line: outputs.left_out(wanted) for line, wanted in fields.items()}
         self._ledger = ledger_variables(facts.dissipating, facts.working)
-        made_of = facts.title, facts.version, left_out, self._ledger, facts.sections, facts.offsets, keeping.goes_on
-        self._series = SeriesFile(folder / run_folder.SERIES, arcs, *made_of, hung)
+        self._series = SeriesFile(
+            folder / run_folder.SERIES,
+            arcs,
+            facts.title,
+            facts.version,
+            left_out=left_out,
+            ledger=self._ledger,
+            sections=facts.sections,
+            offsets=facts.offsets,
+            goes_on=keeping.goes_on,
+            more=hung,
+        )
         nodes = {name: arc.size for name, arc in arcs.items()}
         self._frames = RunFrames(folder, nodes, soil_mesh, fields, keeping.goes_on)
         self._lasting, self._resumable, self._untouched = False, keeping.goes_on, keeping.goes_on
@@ -150,7 +160,7 @@ class Recorder:
 
     @property
     def _way_on(self) -> str:
-        """How to go on from the last checkpoint."""
+        """End of a message: the command that goes on from the last checkpoint."""
         if not self._resumable:
             return ""
         folder, scene = shlex.quote(str(self._folder)), shlex.quote(str(self._folder / run_folder.SCENE))
@@ -292,7 +302,7 @@ class Recorder:
             self._let_go()
 
     def _let_go(self) -> None:
-        """Nothing is written any more: what can't be written once is not tried again."""
+        """Close all files without writing: what can't be written once is not tried again."""
         if self._closed:
             return
         self._closed = True
@@ -330,7 +340,7 @@ class Recorder:
         self._tallies.picture(soil)
 
     def state(self) -> Saved:
-        """What is gathered on the way; what is written stays in the folder."""
+        """State to resume from: tallies, and how much has been written; files stay in the folder."""
         return gathered(self._owners)
 
     def restore(self, saved: Saved) -> None:

@@ -147,7 +147,7 @@ def code_values(
 
 
 def _pressures(riser: LineAssembly, forces: SectionForces, pressure: Array) -> tuple[Array, Array, Array]:
-    """Inside and outside at the nodes, and inside at the level to which the contents' pressure refers [Pa]."""
+    """Pressures [Pa]: inside and outside at the nodes, and inside at the level of the contents' given pressure."""
     none, pressures = np.zeros_like(forces.effective_tension), riser.pressures
     if pressures is None:
         return none, none, none[..., :1]

@@ -52,7 +52,7 @@ class RunFrames:
             self._files.append(self._soil)
 
     def drawable(self, soil: SoilSnapshot | None) -> bool:
-        """Whether a frame needs no more than this of the soil."""
+        """Whether a frame can be made with this snapshot of the soil."""
         return self._soil is None or soil is not None
 
     def add(self, stamp: float, rows: Mapping[str, Array], row: int, soil: SoilSnapshot | None) -> int:
@@ -77,7 +77,7 @@ class RunFrames:
             each.flush()
 
     def outlast_power(self) -> None:
-        """From now on what is written outlasts a power loss."""
+        """Write through to the disk from now on, so that the files outlast a power cut."""
         for each in self._files:
             each.outlast_power()
 
@@ -87,7 +87,7 @@ class RunFrames:
 
     @property
     def owners(self) -> dict[str, Stateful]:
-        """What keeps a state from step to step, by the names under which it is saved."""
+        """Files with a state from step to step, by the names under which it is saved."""
         lines: dict[str, Stateful] = {f"{line or 'riser'}_frames": file for line, file in self._lines.items()}
         return lines if self._soil is None else lines | {"soil_frames": self._soil}
 

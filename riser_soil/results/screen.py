@@ -93,7 +93,7 @@ def _stage_rows(stage: dict[str, Any]) -> list[Row]:
 
 
 def _hung_rows(stage: dict[str, Any]) -> Iterator[Row]:
-    """Where bodies are, forces of joints and clearances."""
+    """Rows of bodies, with their places, of forces of joints and of clearances."""
     for name, body in stage.get("bodies", {}).items():
         yield f"body {name}", _place(body["position"]["final"], "m", 1.0)
         if "contact_force" in body:

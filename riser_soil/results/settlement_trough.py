@@ -54,7 +54,7 @@ class TroughSections:
 
     @property
     def laid(self) -> bool:
-        """Whether all of them are somewhere."""
+        """Whether all sections have a place."""
         return not np.isnan(self._direction).any()
 
     def lay(self, nodes: Array, tangent: Array, touchdown_arc: float) -> None:
@@ -73,7 +73,7 @@ class TroughSections:
                 self._direction[n] = np.cross([0.0, 0.0, 1.0], level / size)
 
     def look(self, state: State) -> dict[str, Array]:
-        """Their places, and the settlement in them at a state: nan where none is laid yet, or beside the soil."""
+        """Places of the sections and settlement in them at a state; nan in one without a place, and beside the soil."""
         across = self._offsets[None, :, None] * self._direction[:, None, :2]
         xy = self._position[:, None, :2] + across
         settlement, there = np.full(xy.shape[:2], np.nan), self._there

@@ -113,13 +113,13 @@ class SoilPlausibility:
         self._boundary = boundary_stress(self._soil.recovered(), across)
 
     def _beyond_block(self, record: Record) -> Array:
-        """How far the touchdown point lies beyond the soil in plan (1,) [m]; 0 where there is none."""
+        """Distance of the touchdown point beyond the soil in plan (1,) [m]; 0 without a touchdown point."""
         grid, at = self._soil.whole.grid, record.touchdown_position[:2]
         outside = np.maximum(grid.low[:2] - at, at - grid.high[:2]).max()
         return np.array([max(0.0, float(np.nan_to_num(outside, nan=0.0)))])
 
     def warnings(self) -> tuple[str, ...]:
-        """With numbers and a remedy."""
+        """Warnings about the soil's results, with numbers and a remedy."""
         by_forces = [*self._stretched(), *self._overloaded()]
         return (*by_forces, *self._left_the_block(), *self._block_too_small(), *self._never_touched())
 
@@ -183,6 +183,6 @@ class SoilPlausibility:
         return self._worst.state() | touched
 
     def restore(self, saved: Saved) -> None:
-        """In the stage that has begun."""
+        """Resume in the stage that has begun."""
         self._worst.restore(saved)
         self._touched, self._where, self._lowest = bool(saved["touched"]), unpacked(saved["where"]), saved["lowest"]

@@ -32,12 +32,12 @@ class StageRecords:
 
     @property
     def timed(self) -> bool:
-        """Whether it goes along t, as quasi-static and dynamic stages do."""
+        """Whether the stage goes along t, as quasi-static and dynamic stages do."""
         return bool(self.summary["kind"] != "static")
 
     @property
     def time(self) -> Array:
-        """(nr,) s, total simulated time."""
+        """Total simulated time (nr,) [s] of the records."""
         return self.run.time[self.records]
 
     @property

@@ -28,7 +28,7 @@ class Tallies:
 
     @property
     def stage(self) -> StageTally:
-        """The present one."""
+        """Tally of the present stage."""
         return self.summary.stages[-1]
 
     def begin_stage(self, name: str, kind: str, automatic: bool) -> None:

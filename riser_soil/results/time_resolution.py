@@ -53,7 +53,7 @@ class TimeResolution:
 
     @property
     def _less(self) -> Array:
-        """How much less than the extreme the other peak is (2, n)."""
+        """Extreme less the other peak (2, n), by size."""
         extreme, rival = self._course.extreme, self._course.rival
         return np.subtract(extreme, rival, out=np.full_like(extreme, np.inf), where=np.isfinite(rival))
 

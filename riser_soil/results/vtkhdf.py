@@ -92,7 +92,7 @@ def append(
 
 
 def cut_back(store: h5py.File, frames: int) -> None:
-    """Take the instants after the first `frames` away."""
+    """Remove the instants after the first `frames`."""
     instants = store[_INSTANTS]
     for name in [name for name in instants if int(name.rpartition("_")[2]) >= frames]:
         del instants[name]
@@ -110,7 +110,7 @@ def cut_back(store: h5py.File, frames: int) -> None:
 
 
 def times(store: h5py.File) -> Array:
-    """(nf,) s."""
+    """Times (nf,) [s] of the instants."""
     values: Array = store[ROOT]["Steps"]["Values"][...]
     return values
 
@@ -132,7 +132,7 @@ def values_at(store: h5py.File, number: int) -> dict[str, Array]:
 
 
 def _rows(root: h5py.Group, kind: str) -> int:
-    """How many points or cells one instant has."""
+    """Count of points or cells at one instant."""
     if kind == "Cell" and _KINDS_OF_LINES[1] in root:
         root = root[_KINDS_OF_LINES[1]]
     return int(root[f"NumberOf{kind}s"][0])

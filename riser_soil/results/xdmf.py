@@ -146,7 +146,7 @@ class XdmfFile:
         return head + self._content.replace(_NUMBER, f"{number:06d}")
 
     def _content_of(self, frame: Frame) -> str:
-        """What all grids have alike, but for their numbers."""
+        """Text of a grid, the same for all but for its number."""
         on = {"Node": frame.on_points, "Cell": frame.on_cells}
         each = [(name, centre, values) for centre, of in on.items() for name, values in of.items()]
         items = {name: self._item(vtkhdf.instant(name, _NUMBER), values.shape) for name, _, values in each}
