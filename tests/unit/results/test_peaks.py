@@ -70,6 +70,19 @@ def test_extremes_of_a_stage_three_ways() -> None:
     assert largest["peaks"] == pytest.approx(top, rel=3e-4)
 
 
+@pytest.mark.parametrize("kind", ["static", "quasi-static", "dynamic"])
+def test_a_stage_along_t_begins_with_the_end_of_the_stage_before(kind: str) -> None:
+    """The largest moment is that of the static stage's end, but in another static stage."""
+    peaks = RunPeaks()
+    for name, stage, t in (("lay", "static", 0.0), ("on", kind, 1.0)):
+        peaks.begin_stage(name, stage)
+        peaks.record([t], {"": stacked([record_at(t)])})
+    for which in ("sampled", "of_nodes", "peaks"):
+        extremes = peaks.as_summary(which)["stages"][1]["extremes"]["max_bending_moment"]
+        first = 1.0 if kind == "static" else 0.0
+        assert extremes["max"] == pytest.approx(record_at(first).largest_moment)
+
+
 @pytest.mark.parametrize("steps", [40, 60, 160])
 def test_a_motion_has_extremes_in_windows_of_its_time(steps: int) -> None:
     """Sixteen of 2 s, between steps too, to second order at their edges; a figure that is none has none."""

@@ -100,6 +100,7 @@ def test_a_straight_pipe_has_no_bend_radius() -> None:
 
 def test_a_pipe_bent_too_much_is_a_warning() -> None:
     assert exceeded(bent(20.1), bent(25.0)) == []
+    assert len(exceeded(bent(19.9), bent(25.0))) == 1
     warnings = exceeded(bent(25.0), bent(16.0), bent(18.0))
     assert len(warnings) == 1
     line_with(warnings, "min_bend_radius", "1.25 times", "arc 30 m and 0.2 s", "radius is 16 m")
