@@ -67,11 +67,16 @@ class Balance(Protocol):
 
 class Loop:
     """Base of what finds a `Balance`. max_iterations: those after which a step is looked at. factorises: whether
-    pivots may be counted, too. again: whether what failed last may be tried once more.
+    pivots may be counted, too.
     """
 
     max_iterations: int
-    factorises, again = True, False
+    factorises = True
+
+    @property
+    def again(self) -> bool:
+        """Whether what failed last may be tried once more."""
+        return False
 
     def iterate(self, x: Array) -> str:
         """Iterate from x: how it ends; what was judged last is what was found; collective."""

@@ -17,11 +17,9 @@ import numpy as np
 from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
-from riser_soil.core.banded import SingularError
 from riser_soil.core.saved_state import Saved
 from riser_soil.core.system import System
-from riser_soil.solve.convergence import CONVERGED, DIVERGED, ITERATING, NOT_FINITE, NOT_SOLVED, TOO_MANY
-from riser_soil.solve.linear_solver import complaint, raised
+from riser_soil.solve.convergence import CONVERGED, DIVERGED, ITERATING, NOT_FINITE, TOO_MANY
 from riser_soil.solve.newton_loop import Balance, Loop
 from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.petsc_options import PREFIX, Given, as_text, defaults, refuse_unread, set_from_options
@@ -29,7 +27,6 @@ from riser_soil.solve.tangent_solver import TangentSolver
 
 REASON = PETSc.SNES.ConvergedReason
 UNLIMITED = 10**6  # iterations: the balance says when there are too many
-ALONE = 1e-5  # share of the residual that the response of a tangent by itself may leave, beside Newton's iterations
 REASONS = {
     ITERATING: REASON.ITERATING,
     CONVERGED: REASON.CONVERGED_FNORM_RELATIVE,
@@ -50,8 +47,7 @@ class SnesLoop(Loop):
             self._tangents = TangentSolver(system, settings.linear, given)
             before_soil = settings.has_soil and not system.model.others  # whose solvers read options, too
             self._all_read = before_soil or not given.any
-            self.linear, self.again = self._tangents.solver, False
-            self.factorises = self.linear.factorises
+            self.linear, self.factorises = self._tangents.solver, self._tangents.solver.factorises
             self._create()
             self._options = stack.pop_all()
 
@@ -78,9 +74,7 @@ class SnesLoop(Loop):
     def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, jacobian: PETSc.Mat, p: PETSc.Mat) -> None:
         """Assemble the tangent and choose its solver. A tangent that is left as it was keeps its factors."""
         self._balance.tangent(np.array(x.array_r))
-        snes.setKSP(self._tangents.choose(self._f, self._balance))
-        if self.linear.to_tolerance:
-            self._tangents.tighten(self._balance.linear_tolerance())
+        snes.setKSP(self._tangents.next(self._f, self._balance))
 
     def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
         x = np.array(self._x.array_r)
@@ -100,39 +94,34 @@ class SnesLoop(Loop):
     def iterate(self, x: Array) -> str:
         self._x.array_w[:] = x
         self._snes.setTolerances(max_it=UNLIMITED)
-        unsolved = REASON.DIVERGED_LINEAR_SOLVE
-        failure = self._failing(lambda: self._snes.solve(None, self._x), lambda: self._snes.reason == unsolved)
-        if not failure and self._tangents.used and not self._all_read:
+        if failure := self._failure(self._solve):
+            return failure
+        if self._tangents.used and not self._all_read:
             refuse_unread(self._snes)
             self._all_read = True
-        return failure or _ending(self._snes.reason)
+        return _ending(self._snes.reason)
+
+    def _solve(self) -> bool:
+        """Let SNES iterate; whether it could solve all its linear systems."""
+        self._snes.solve(None, self._x)
+        return bool(self._snes.reason != REASON.DIVERGED_LINEAR_SOLVE)
 
     def respond(self, f: Array) -> tuple[str, Array]:
-        """By the linear solver that SNES has."""
         self._f.array_w[:] = f
-        solver = self._tangents.choose(self._f, self._balance)
-        solver.setOperators(self._system.matrix.mat)
-        self._tangents.tighten(ALONE)
-        failure = self._failing(lambda: solver.solve(self._f, self._x), lambda: solver.reason < 0)
+        failure = self._failure(lambda: self._tangents.solve(self._f, self._x, self._balance))
         return failure, np.array(self._x.array_r)
 
-    def _failing(self, solve: Callable[[], None], unsolved: Callable[[], bool]) -> str:
-        """Call a solver; why its linear systems could not be solved, else "". No factors outlive a failed
-        factorisation: MUMPS would refuse all that comes after it.
-        """
-        complained, self.again = "", False
-        try:
-            solve()
-        except (PETSc.Error, SingularError) as err:
-            complained = complaint(err)
-            if not complained:
-                raise raised(err) from None
-        if not complained and not unsolved():
-            return ""
-        why, self.again = self._tangents.failed()
-        self.release()
-        self._create()
-        return complained or why or NOT_SOLVED
+    def _failure(self, solved: Callable[[], bool]) -> str:
+        """Why linear systems could not be solved, "" where they could; after a failure all is made anew."""
+        failure = self._tangents.failure(solved)
+        if failure:
+            self.release()
+            self._create()
+        return failure
+
+    @property
+    def again(self) -> bool:
+        return self._tangents.again
 
     def renew(self) -> None:
         """Make all anew for the matrix that the system has now."""

@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
 import numpy as np
 from petsc4py import PETSc
 
+from riser_soil.core.banded import SingularError
 from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.system import System
 from riser_soil.solve.bordered_band import band_of
+from riser_soil.solve.convergence import NOT_SOLVED
 from riser_soil.solve.direct_solver import DirectSolver
 from riser_soil.solve.iterative_solver import IterativeSolver, solid_of
 from riser_soil.solve.kept_factors import KeptFactors
-from riser_soil.solve.linear_solver import LinearSolver
+from riser_soil.solve.linear_solver import LinearSolver, complaint, raised
 from riser_soil.solve.newton_loop import Balance
 from riser_soil.solve.petsc_options import Given
 from riser_soil.solve.riser_above_soil import RiserAboveSoil
 from riser_soil.solve.section_solver import SectionSolver, sections_of
 
 LARGE = 4000  # unknowns from which on kept factors are cheaper than new ones
+ALONE = 1e-5  # share of the residual that the response of a tangent by itself may leave, beside Newton's iterations
 
 
 def linear_solver(system: System, asked: str, by_options: bool) -> LinearSolver:
@@ -62,11 +65,12 @@ class PetscSolver(LinearSolver):
 class TangentSolver:
     """The KSP of a system's tangents and, where nothing touches whole soil, that of the riser alone in its place.
 
-    solver: of tangents of all rows; used: whether it has been chosen.
+    solver: of tangents of all rows; used: whether it has been chosen; again: whether what failed last may be tried once
+    more.
     """
 
     def __init__(self, system: System, asked: str, given: Given) -> None:
-        self._system, self._given, self.used = system, given, False
+        self._system, self._given, self.used, self.again = system, given, False, False
         self.solver = linear_solver(system, asked, given.linear_solver)
 
     def attach(self, ksp: PETSc.KSP) -> None:
@@ -80,8 +84,38 @@ class TangentSolver:
             self._alone = RiserAboveSoil(system), PETSc.KSP().create(system.comm)
             self._alone[0].attach(self._alone[1], self._levers)
 
-    def choose(self, f: PETSc.Vec, balance: Balance) -> PETSc.KSP:
-        """The solver of the present tangent for a residual, which has not been told how exactly."""
+    def next(self, f: PETSc.Vec, balance: Balance) -> PETSc.KSP:
+        """The solver of the present tangent for the residual of an iteration."""
+        ksp = self._choose(f, balance)
+        if self.solver.to_tolerance:
+            self._tighten(balance.linear_tolerance())
+        return ksp
+
+    def solve(self, f: PETSc.Vec, x: PETSc.Vec, balance: Balance) -> bool:
+        """Write what the present tangent answers to a residual by itself; whether there is an answer."""
+        ksp = self._choose(f, balance)
+        ksp.setOperators(self._system.matrix.mat)
+        self._tighten(ALONE)
+        ksp.solve(f, x)
+        return bool(ksp.reason >= 0)
+
+    def failure(self, solved: Callable[[], bool]) -> str:
+        """Call what says whether it could solve its linear systems: why it could not, else ""; all other errors pass.
+        What has failed leaves no factors: MUMPS would refuse all that comes after it.
+        """
+        said, self.again = "", False
+        try:
+            if solved():
+                return ""
+        except (PETSc.Error, SingularError) as err:
+            said = complaint(err)
+            if not said:
+                raise raised(err) from None
+        why, self.again = self.solver.failed(self._ksp)
+        return said or why or NOT_SOLVED
+
+    def _choose(self, f: PETSc.Vec, balance: Balance) -> PETSc.KSP:
+        """The solver of the present tangent for a residual, however exact it is to be."""
         if self.solver.reads_mat or self._given.any:
             self._system.matrix.write()
         if self._alone is not None:
@@ -91,14 +125,10 @@ class TangentSolver:
         self.used = True
         return self._ksp
 
-    def tighten(self, tolerance: float) -> None:
+    def _tighten(self, tolerance: float) -> None:
         """Solve to a tolerance from now on, where the user gives none."""
         if not self._given.linear_tolerance:
             self._ksp.setTolerances(rtol=tolerance)
-
-    def failed(self) -> tuple[str, bool]:
-        """See `LinearSolver`."""
-        return self.solver.failed(self._ksp)
 
     def drop(self) -> None:
         """Destroy what belongs to the present matrix, factors on all ranks at once: MUMPS waits for the others."""
