@@ -30,7 +30,7 @@ from riser_soil.soil.grading import BlockSpec
 PROCESS, SOIL_PROCESS, PER_RISER_DOF, PER_CELL_ENTRY, PER_STOP, PER_WAVE = 0.24e9, 0.14e9, 2e3, 55.0, 150.0, 150.0
 PER_UNKNOWN = 1.5e3  # bytes of multigrid and of GMRES' vectors
 PLANE = 3  # times as much has a cell in plane strain for an entry, as its law knows all components
-PER_LAYER = 60.0  # bytes of the factors of an unknown in a section, whose band is as wide as two nodes of each layer
+PER_LAYER = 90.0  # bytes of the factors of an unknown in a section, whose band is as wide as two nodes of each layer
 WITHIN = 1.3  # memory is at most this many times the forecast, or the forecast over this
 # Doubles of a record: by node, by step; of a picture: by node of the riser, by cell of the soil with its nodes,
 # somewhat more than one.

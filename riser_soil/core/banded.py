@@ -12,6 +12,8 @@ Reid, Direct Methods for Sparse Matrices (2017), 5.2.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
@@ -133,14 +135,18 @@ def _insert_whole(ab: Array, x: Array, end: int, first: int, b: int, reach: int)
 
 
 @njit
-def inverse_at(ab: Array, pivots: IntArray, at: IntArray, B: Size) -> Array:
-    """Rows and columns `at` (m,), in increasing order, of the inverse (m, m), with the factors of `factorise`."""
-    n, b, m = pivots.size, len(B), at.size
+def solve_at(ab: Array, pivots: IntArray, at: IntArray, loads: Array, B: Size) -> Array:
+    """Rows `at` (m,), in increasing order, of the solution (m, nl) for loads (m, nl) in these rows, with the factors of
+    `factorise`; all other rows bear nothing.
+    """
+    n, b, m = pivots.size, len(B), loads.shape[1]
     x = np.zeros((n, m))
-    if m == 0:
+    each: Any = np.zeros(m)
+    if at.size == 0:
         return x[at]
-    for k in range(m):
-        x[at[k], k] = 1.0
+    for k in range(at.size):
+        for c in range(m):
+            x[at[k], c] = loads[k, c]
     for k in range(max(at[0] - b, 0), n):
         p = pivots[k]
         if p != k:
@@ -149,14 +155,12 @@ def inverse_at(ab: Array, pivots: IntArray, at: IntArray, B: Size) -> Array:
         for i in range(1, min(b, n - 1 - k) + 1):
             factor = ab[k, i - 1]
             if factor != 0.0:
-                for c in range(m):
-                    x[k + i, c] -= factor * x[k, c]
+                add_multiple(x, (k + i) * m, -factor, x, k * m, each)
     for k in range(n - 1, at[0] - 1, -1):
         for j in range(1, min(2 * b, n - 1 - k) + 1):
             factor = ab[k, b + j]
             if factor != 0.0:
-                for c in range(m):
-                    x[k, c] -= factor * x[k + j, c]
+                add_multiple(x, k * m, -factor, x, (k + j) * m, each)
         for c in range(m):
             x[k, c] *= ab[k, b]
     return x[at]

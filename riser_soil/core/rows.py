@@ -28,6 +28,7 @@ NOTHING = ir.Constant(ir.IntType(8).as_pointer(), None)  # what a function retur
 ITEMS = 4  # the field of an array, as numba has it, that says where its items lie
 FUSED = ("contract",)
 WIDTHS = 4, 2, 1  # of vectors that make up a row
+ONE, EIGHT = (0,), (0,) * 8  # lengths of rows
 
 
 def machine_code_of(plain: Any) -> Callable[[Any], Any]:
@@ -85,10 +86,24 @@ def add_multiple(out: Array, at: int, factor: float, rows: Array, start: int, N:
 @overload(add_multiple, inline="always", strict=False)
 def _chosen(out: Any, at: Any, factor: Any, rows: Any, start: Any, N: Any) -> Any:
     if not isinstance(N, types.BaseTuple):
-        return add_multiple
+        return lambda out, at, factor, rows, start, N: _add_by_eights(out, at, factor, rows, start, N)
     if len(N) == 0:
         return lambda out, at, factor, rows, start, N: None
     return lambda out, at, factor, rows, start, N: _add_multiple(out, at, factor, rows, start, N)
+
+
+def _add_by_eights(out: Array, at: int, factor: float, rows: Array, start: int, N: Array) -> None:
+    """Rows whose length is not known as this is compiled."""
+    n = 0
+    while n + 8 <= len(N):
+        _add_multiple(out, at + n, factor, rows, start + n, EIGHT)
+        n += 8
+    while n < len(N):
+        _add_multiple(out, at + n, factor, rows, start + n, ONE)
+        n += 1
+
+
+overload(_add_by_eights, jit_options={"forceinline": True}, strict=False)(lambda *_: _add_by_eights)
 
 
 @intrinsic

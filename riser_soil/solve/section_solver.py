@@ -46,24 +46,24 @@ class SectionSolver(PythonContext, LinearSolver):
 
     def __init__(self, system: System, soil: SoilField, workspace: Workspace) -> None:
         self._system, self._soil, self._workspace = system, soil, workspace
-        self._by_rows_exchanged = False
+        self._as_a_whole = False
         self._section: IntArray | None = None  # of each row of the system, on all ranks or none
         self._factors = SectionFactors((), 0, 0)
         self._borders: _BorderSystem | None = None
 
     @property
     def reads_mat(self) -> bool:
-        return self._by_rows_exchanged
+        return self._as_a_whole
 
     def attach(self, ksp: PETSc.KSP, levers: PETSc.Vec) -> None:
         ksp.setType(PETSc.KSP.Type.PREONLY)
-        if self._by_rows_exchanged:
+        if self._as_a_whole:
             factorise_directly(ksp.getPC(), self._system, self._workspace)
         else:
             self.work_for(ksp.getPC())
 
     def setUp(self, pc: PETSc.PC) -> None:
-        """Factorise a new tangent, called by PETSc; SingularError where rows would have to be exchanged."""
+        """Factorise a new tangent, called by PETSc; SingularError where an interior has no inverse."""
         comm, csr, first = self._system.comm, self._system.matrix.stored.csr(), self._system.numbering.first
         mine = slice(first, first + len(csr[0]) - 1)
         if self._section is None:
@@ -88,14 +88,14 @@ class SectionSolver(PythonContext, LinearSolver):
         found.array_w[:] = x
 
     def failed(self, ksp: PETSc.KSP) -> tuple[str, bool]:
-        """No message, and whether another try may do: one that exchanges rows, until the pattern changes."""
-        again = not self._by_rows_exchanged or self._workspace.grows_after(ksp.getPC())
-        self._by_rows_exchanged = True
+        """No message, and whether another try may do: by factors of the whole matrix, until its pattern changes."""
+        again = not self._as_a_whole or self._workspace.grows_after(ksp.getPC())
+        self._as_a_whole = True
         return "", again
 
     def renew(self) -> None:
         """Expect a matrix of another pattern."""
-        self._by_rows_exchanged = False
+        self._as_a_whole = False
         self.forget()
 
     def forget(self) -> None:

@@ -77,9 +77,9 @@ def test_each_newton_step_solves_its_linear_system(contact: Mapping, monkeypatch
         errors.append(backward_error(solver._system, solution.array_r, load.array_r))
 
     def accepted(factors: SectionFactors, csr: Csr, coupled: BoolArray) -> bool:
-        sound = factorise(factors, csr, coupled)
+        regular = factorise(factors, csr, coupled)
         made.append(int(factors.bands.renewed.sum()))
-        return sound
+        return regular
 
     monkeypatch.setattr(SectionSolver, "apply", judge)
     monkeypatch.setattr(SectionFactors, "factorise", accepted)
@@ -90,7 +90,7 @@ def test_each_newton_step_solves_its_linear_system(contact: Mapping, monkeypatch
 
 
 @pytest.mark.verify
-def test_a_pivot_that_is_not_sound_is_left_to_the_general_solver(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interior_without_an_inverse_is_left_to_the_general_solver(monkeypatch: pytest.MonkeyPatch) -> None:
     """A step of 0.1 um has the round-off of those of 9 mm before it."""
     expected, usual, calls = steps(on_sections("direct")), SectionFactors.factorise, count()
     monkeypatch.setattr(SectionFactors, "factorise", lambda *given: usual(*given) and next(calls) % 7 != 6)

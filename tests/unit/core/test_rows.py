@@ -30,7 +30,7 @@ def _added(out: Array, at: int, factor: float, rows: Array, start: int, N: Size)
     add_multiple(out, at, factor, rows, start, N)
 
 
-@pytest.mark.parametrize("N", [fixed(0), fixed(1), fixed(5), fixed(12), np.zeros(5)])
+@pytest.mark.parametrize("N", [fixed(0), fixed(1), fixed(5), fixed(12), np.zeros(5), np.zeros(17)])
 def test_a_row_is_added_where_it_is_asked_for(N: Size) -> None:
     rows, out, n = np.arange(48.0).reshape(4, 12), np.ones((2, 3, 12)), len(N)
     expected = out.copy()
