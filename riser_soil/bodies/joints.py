@@ -155,17 +155,17 @@ class Joints:
         return {NAME: MatrixBlock(dofs, dofs)}
 
     def residual(self, state: State, forces: Forces) -> None:
-        np.add.at(forces.force, self.dofs, conjugate(self.laws, self._places(state), self.left_at(state.t)))
+        np.add.at(forces.force, self.dofs, conjugate(self.laws, self._places(state), self.open_share_at(state.t)))
 
-    def left_at(self, t: float) -> float:
-        """In the static stage in which joints close, less of the gap as its load factor grows."""
+    def open_share_at(self, t: float) -> float:
+        """Share of the first gap that is open: in the static stage in which joints close it falls to none."""
         return self.open * (1.0 - t)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        add_tangent(values[NAME], weights.force, self.laws, self._places(state), self.left_at(state.t))
+        add_tangent(values[NAME], weights.force, self.laws, self._places(state), self.open_share_at(state.t))
 
     def energy(self, state: State) -> Energy:
-        return Energy(strain=float(energy_of(self.laws, self._places(state), self.left_at(state.t))))
+        return Energy(strain=float(energy_of(self.laws, self._places(state), self.open_share_at(state.t))))
 
     def work(self, before: State, after: State) -> Work:
         return Work()
@@ -176,9 +176,9 @@ class Joints:
     def acting(self, state: State) -> tuple[Array, Array, Array]:
         """Forces [N] and moments [N.m] on the second node of each joint, at its point (m, 3), and gaps (m, 3) [m]."""
         at = self._places(state)
-        left = self.left_at(state.t)
-        gap = gaps(self.laws, at, left)
-        moment = self.laws.kr[:, None] * turns(self.laws, at, left)
+        share = self.open_share_at(state.t)
+        gap = gaps(self.laws, at, share)
+        moment = self.laws.kr[:, None] * turns(self.laws, at, share)
         return self.laws.k[:, None] * gap, moment, gap
 
 
@@ -225,24 +225,24 @@ def _look(side: Side, state: State) -> tuple[Array, ...]:
 
 
 @njit
-def gaps(laws: Laws, at: JointPlaces, left: float) -> Array:
-    """g (m, 3), less what is left of the first one."""
+def gaps(laws: Laws, at: JointPlaces, share: float) -> Array:
+    """g (m, 3), less the share of the first one that is open."""
     out = np.empty((laws.k.size, 3))
     for j in range(laws.k.size):
         first = add(vector(at.x[j, 0]), matvec(matrix(at.R[j, 0]), vector(laws.arm[j, 0])))
         second = add(vector(at.x[j, 1]), matvec(matrix(at.R[j, 1]), vector(laws.arm[j, 1])))
-        gap = sub(sub(first, second), scale(left, vector(laws.gap[j])))
+        gap = sub(sub(first, second), scale(share, vector(laws.gap[j])))
         out[j, 0], out[j, 1], out[j, 2] = gap
     return out
 
 
 @njit
-def turns(laws: Laws, at: JointPlaces, left: float) -> Array:
-    """phi (m, 3), with what is left to turn."""
+def turns(laws: Laws, at: JointPlaces, share: float) -> Array:
+    """phi (m, 3), with the share of q that is open."""
     out = np.zeros((laws.k.size, 3))
     for j in range(laws.k.size):
         if laws.kr[j] > 0.0:
-            rest = matmul(rotations.exp(scale(1.0 - left, vector(laws.turn[j]))), matrix(laws.first[j, 1]))
+            rest = matmul(rotations.exp(scale(1.0 - share, vector(laws.turn[j]))), matrix(laws.first[j, 1]))
             C = matmul(transpose(matrix(laws.first[j, 0])), rest)
             turn = matmul(matrix(at.R[j, 0]), matmul(C, transpose(matrix(at.R[j, 1]))))
             out[j, 0], out[j, 1], out[j, 2] = rotations.log(turn)
@@ -250,17 +250,17 @@ def turns(laws: Laws, at: JointPlaces, left: float) -> Array:
 
 
 @njit
-def energy_of(laws: Laws, at: JointPlaces, left: float) -> float:
-    gap, turn, twice = gaps(laws, at, left), turns(laws, at, left), 0.0
+def energy_of(laws: Laws, at: JointPlaces, share: float) -> float:
+    gap, turn, twice = gaps(laws, at, share), turns(laws, at, share), 0.0
     for j in range(laws.k.size):
         twice += laws.k[j] * dot(vector(gap[j]), vector(gap[j])) + laws.kr[j] * dot(vector(turn[j]), vector(turn[j]))
     return 0.5 * twice
 
 
 @njit
-def conjugate(laws: Laws, at: JointPlaces, left: float) -> Array:
+def conjugate(laws: Laws, at: JointPlaces, share: float) -> Array:
     """What is conjugate to the dofs of both nodes (m, 12)."""
-    gap, turn, out = gaps(laws, at, left), turns(laws, at, left), np.empty((laws.k.size, 12))
+    gap, turn, out = gaps(laws, at, share), turns(laws, at, share), np.empty((laws.k.size, 12))
     for j in range(laws.k.size):
         for side in range(2):
             sign = 1.0 - 2.0 * side
@@ -273,9 +273,9 @@ def conjugate(laws: Laws, at: JointPlaces, left: float) -> Array:
 
 
 @njit
-def add_tangent(K: Array, weight: float, laws: Laws, at: JointPlaces, left: float) -> None:
+def add_tangent(K: Array, weight: float, laws: Laws, at: JointPlaces, share: float) -> None:
     """Add weight times the derivative of `conjugate` to K (m, 12, 12)."""
-    gap, turn = gaps(laws, at, left), turns(laws, at, left)
+    gap, turn = gaps(laws, at, share), turns(laws, at, share)
     moved, turned, signs = np.zeros((3, 12)), np.zeros((3, 12)), np.array([1.0, -1.0])
     for j in range(laws.k.size):
         k, kr, phi = laws.k[j], laws.kr[j], vector(turn[j])

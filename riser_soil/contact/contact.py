@@ -41,7 +41,7 @@ class RiserContact(LinePart, ABC):
     @property
     @abstractmethod
     def along(self) -> PointsAlong:
-        """Where contact forces and gaps are told along the line."""
+        """Points along the line at which results have contact forces and gaps."""
 
     @abstractmethod
     def contact_along_line(self, state: State) -> tuple[Array, Array]:

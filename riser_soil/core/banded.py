@@ -77,16 +77,16 @@ def _pivot(ab: Array, k: int, B: Size) -> int:
 @njit
 def solve(ab: Array, pivots: IntArray, x: Array, B: Size) -> None:
     """Solve with the factors of `factorise`: the right-hand side x (n,) becomes the solution."""
-    b, wide = len(B), _take_off(ab, pivots, x, B)
+    b, wide = len(B), _forward_eliminate(ab, pivots, x, B)
     whole = max(pivots.size - 2 * b, 0) if b > 0 else 0  # rows that have all of their numbers within the matrix
-    _insert(ab, x, pivots.size, whole, b)
+    _back_substitute(ab, x, pivots.size, whole, b)
     if b > 0:
-        _insert_whole(ab, x, whole, min(wide, whole), b, b)
-        _insert_whole(ab, x, min(wide, whole), 0, b, 2 * b)
+        _back_substitute_whole(ab, x, whole, min(wide, whole), b, b)
+        _back_substitute_whole(ab, x, min(wide, whole), 0, b, 2 * b)
 
 
 @njit
-def _take_off(ab: Array, pivots: IntArray, x: Array, B: Size) -> int:
+def _forward_eliminate(ab: Array, pivots: IntArray, x: Array, B: Size) -> int:
     """Forward elimination of a right-hand side; the row from which on none has any fill."""
     n, wide = pivots.size, 0
     for k in range(n):
@@ -104,7 +104,7 @@ def _take_off(ab: Array, pivots: IntArray, x: Array, B: Size) -> int:
 
 
 @njit
-def _insert(ab: Array, x: Array, end: int, first: int, b: int) -> None:
+def _back_substitute(ab: Array, x: Array, end: int, first: int, b: int) -> None:
     """Back substitution for the rows before `end`, down to `first`; the matrix' end may cut rows short."""
     for k in range(end - 1, first - 1, -1):
         total = x[k]
@@ -114,7 +114,7 @@ def _insert(ab: Array, x: Array, end: int, first: int, b: int) -> None:
 
 
 @njit
-def _insert_whole(ab: Array, x: Array, end: int, first: int, b: int, reach: int) -> None:
+def _back_substitute_whole(ab: Array, x: Array, end: int, first: int, b: int, reach: int) -> None:
     """Back substitution for rows with as many numbers beyond their pivots as `reach` says.
 
     All products but one are summed before the number found last is there; the rest is added in two sums.

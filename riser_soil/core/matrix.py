@@ -56,7 +56,7 @@ class Matrix:
         return self.stored.mat
 
     def write(self) -> None:
-        """See that PETSc has the present values; collective."""
+        """Write the present values to PETSc's matrix, unless it has them; collective."""
         self.stored.write()
 
     def clear(self) -> None:

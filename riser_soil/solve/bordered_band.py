@@ -48,7 +48,7 @@ class BorderedBand:
         return np.zeros((band + wide, 3 * wide + 1)), right, below, corner
 
     def factorise(self) -> None:
-        """Where that has not been done; SingularError where it can't be."""
+        """Factorise the present matrix, unless its factors are known; SingularError where it has none."""
         if self._factored == self._matrix.changes:
             return
         self._factored, factors = -1, (self._band, self._pivots, self._wide)
@@ -77,13 +77,14 @@ class BorderedBand:
             dense.solve(self._schur, self._exchanged, border)
             bordered.back_substitute(self._coupled, self._right, border, inner)
         banded.solve(self._band, self._pivots, inner, self._wide)
-        for rows, found in zip(self.rows, (inner, border), strict=True):
-            x[rows] = found
+        for rows, solution in zip(self.rows, (inner, border), strict=True):
+            x[rows] = solution
         return x
 
     def negative_pivots(self) -> int:
-        """Those of a symmetric matrix without row exchanges: its number of negative eigenvalues, as many as the band
-        and its Schur complement have together (Haynsworth, Linear Algebra Appl. 1, 1968), whatever the units of rows.
+        """Negative pivots of a symmetric matrix without row exchanges: its number of negative eigenvalues, as many as
+        the band and its Schur complement have together (Haynsworth, Linear Algebra Appl. 1, 1968), whatever the units
+        of rows.
         """
         band, right, below, corner = self._new_parts()
         _spread(*self._matrix.stored.csr(), self._places, band, right, below, corner)
@@ -152,8 +153,8 @@ def _width(wide: int) -> Any:
 
 
 def _places(matrix: Matrix, band: IntArray, border: IntArray) -> IntArray:
-    """Where each row and column of a matrix is: its number in the band, -1 less that in the border; that of all rows of
-    the band where it is in neither.
+    """Place (n,) of each row and column of a matrix: its number in the band, or -1 less its number in the border; the
+    number of all rows of the band where it is in neither.
     """
     indptr, indices, _ = matrix.stored.csr()
     places = np.full(max(len(indptr) - 1, int(indices.max(initial=-1)) + 1), len(band), dtype=np.int64)

@@ -86,7 +86,7 @@ def begin_schur(border: Border, factors: Factors) -> None:
 
 
 @njit
-def eliminate(
+def condense(
     workspace: MatrixWorkspace, dofs: Dofs, border: Border, factors: Factors, failure: IntArray
 ) -> None:
     """Condense a line, whose band is factorised, onto the border."""
@@ -106,7 +106,7 @@ def eliminate(
 
 @njit
 def factorise_schur(factors: Factors, failure: IntArray) -> None:
-    """Factorise what is left of the border."""
+    """Factorise the Schur complement."""
     if failure[0] == NONE and not dense.factorise(factors.schur, factors.pivots):
         failure[0] = SINGULAR
 
@@ -148,8 +148,8 @@ def back_substitute(dofs: Dofs, border: Border, factors: Factors) -> None:
         load[k] = border.residual[factors.place[k]]
 
 
-class DenseBorder(Coupling):
-    """The border of lines and bodies, and its elimination. It stands behind those who write to it.
+class DenseBorder:
+    """The border of lines and bodies, and its elimination. Methods return kernels for the phases of an iteration.
 
     of: the `Border` of each line, packed.
     """
@@ -190,27 +190,31 @@ class DenseBorder(Coupling):
             made.append((Border(*own, *coupling), Factors(*schur, *of_line, *rows)))
         return made
 
-    def fill(self) -> list[Bound]:
+    def move_rows(self) -> list[Bound]:
+        """Kernels that move what the bands have of moved dofs to the border."""
         return [Bound(move_rows, line.packed_workspace, self.of[line], self._factors[line]) for line in self.of]
 
     def factorise(self, failure: Packed) -> list[Bound]:
+        """Kernels that factorise the Schur complement of the bands, which are factorised."""
         first, *_ = zip(self.of.values(), self._factors.values(), strict=True)
         return [
             Bound(begin_schur, *first),
-            *(Bound(eliminate, line.packed_workspace, *self._given(line), failure) for line in self.of),
+            *(Bound(condense, line.packed_workspace, *self._of(line), failure) for line in self.of),
             Bound(factorise_schur, first[1], failure),
         ]
 
-    def couple(self) -> list[Bound]:
+    def solve(self) -> list[Bound]:
+        """Kernels that solve for the border's increments, and take what they move off the lines' residuals."""
         first, *_ = zip(self.of.values(), self._factors.values(), strict=True)
         return [
-            *(Bound(load_moved, *self._given(line)) for line in self.of),
-            *(Bound(forward_eliminate, line.packed_workspace, *self._given(line)) for line in self.of),
+            *(Bound(load_moved, *self._of(line)) for line in self.of),
+            *(Bound(forward_eliminate, line.packed_workspace, *self._of(line)) for line in self.of),
             Bound(solve_border, *first),
-            *(Bound(back_substitute, *self._given(line)) for line in self.of),
+            *(Bound(back_substitute, *self._of(line)) for line in self.of),
         ]
 
-    def _given(self, line: PackedLine) -> tuple[Packed, Packed, Packed]:
+    def _of(self, line: PackedLine) -> tuple[Packed, Packed, Packed]:
+        """A line's dofs, border and factors."""
         return line.packed_dofs, self.of[line], self._factors[line]
 
 

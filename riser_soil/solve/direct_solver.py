@@ -32,7 +32,7 @@ class DirectSolver(LinearSolver):
         factorise_directly(ksp.getPC(), self._system, self._workspace)
 
     def failed(self, ksp: PETSc.KSP) -> tuple[str, bool]:
-        """Where factors found too little workspace, the next get more."""
+        """Give the next factors more workspace where there was too little; no message, and whether that may do."""
         return "", self._workspace.grows_after(ksp.getPC())
 
 
@@ -99,7 +99,9 @@ def negative_pivots(system: System) -> int:
 
 
 def negative_pivots_behind(system: System, rows: int) -> int:
-    """Those of its part behind this rank's first rows, and columns, which is coupled with none of these; collective."""
+    """Negative pivots of what lies behind this rank's first rows and columns, and is coupled with none of these;
+    collective.
+    """
     mat, numbering = system.matrix.mat, system.numbering
     behind = np.arange(numbering.first + rows, numbering.first + numbering.owned, dtype=PETSc.IntType)
     at = PETSc.IS().createGeneral(behind, comm=mat.comm)

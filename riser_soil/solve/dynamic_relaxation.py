@@ -136,16 +136,16 @@ class EquilibriumAttempts:
     """Attempts at an equilibrium without drag. After n failures for want of stability the next comes n steps later, and
     after an unstable equilibrium was left not before the tangent is stable.
 
-    left: places (nn, 3) [m] of all nodes in the unstable equilibrium that is being left.
+    unstable: places (nn, 3) [m] of all nodes in the unstable equilibrium that is being left.
     """
 
     failures: int = 0
     wait: int = 0
-    left: Array | None = None
+    unstable: Array | None = None
 
     @property
     def leaving(self) -> bool:
-        return self.left is not None
+        return self.unstable is not None
 
     def due(self) -> bool:
         self.wait -= 1
@@ -192,7 +192,7 @@ def _without_drag(
     except NotConvergedError as failure:
         attempts.count(failure)
         if isinstance(failure, UnstableError) and _is_near(part, failure.solution):
-            attempts.left, attempts.wait = _leave(system, newton, part, failure.solution), 0
+            attempts.unstable, attempts.wait = _leave(system, newton, part, failure.solution), 0
     return None
 
 
@@ -200,10 +200,10 @@ def _still_leaving(newton: Newton, part: Relaxation, t: float, attempts: Equilib
     """Whether the tangent is unstable where the riser is since it left an unstable equilibrium. Near that one, to which
     an attempt would return, it counts as unstable where round-off may make it stable.
     """
-    if attempts.left is not None:
-        near = float(np.abs(_places(part) - attempts.left).max()) < NEAR * part.shortest
+    if attempts.unstable is not None:
+        near = float(np.abs(_places(part) - attempts.unstable).max()) < NEAR * part.shortest
         if _stable(newton, part, t, 0.0, surely=near):
-            attempts.left = None
+            attempts.unstable = None
     return attempts.leaving
 
 
@@ -279,13 +279,13 @@ def _leave(system: System, newton: Newton, part: Relaxation, unstable: Solution)
     places in that equilibrium.
     """
     _pass_through(system, unstable.state)
-    t, left = unstable.state.t, _places(part)
+    t, places = unstable.state.t, _places(part)
     _stabilise(newton, part, t, least=True)
     mode = buckling_mode(system, part, part.fields, at_rest(system, t), Weights.of_statics())
     moved = at_rest(system, t)
     moved.u[:] = NUDGE * part.shortest * mode
     _pass_through(system, moved)
-    return left
+    return places
 
 
 def _largest_increment(part: Relaxation, solution: Solution) -> float:

@@ -46,7 +46,7 @@ class LineMass:
     def __init__(self, nodes: int, prescribed: BoolArray, levers: Array) -> None:
         shape = nodes, levers.size // nodes
         workspace = matrix_workspace(*shape)
-        self.K, self._free, self._known = workspace.K, ~prescribed, False
+        self.K, self._free, self._has_projectors = workspace.K, ~prescribed, False
         self._step = StepData(*(np.zeros(shape) for _ in range(6)))
         self._dofs = Dofs(np.zeros(shape, dtype=bool), np.ones(shape), *(np.zeros(shape) for _ in range(3)))
         moving, whole = np.zeros((*shape, shape[1])), np.zeros(nodes, dtype=bool)
@@ -66,7 +66,7 @@ class LineMass:
         What has no mass (as the twist of a line without inertia about its axis) and prescribed dofs get none.
         """
         self._weigh()
-        if not self._known:
+        if not self._has_projectors:
             self.restore(projectors(self.K, self._free))
         self._step.u[...] = 0.0
         np.negative(force, out=self._dofs.residual.ravel())
@@ -76,11 +76,11 @@ class LineMass:
     @property
     def moving(self) -> Array | None:
         """`projectors` of its nodes, once they are known: they hold for all configurations but to round-off."""
-        return self._mass.moving.copy() if self._known else None
+        return self._mass.moving.copy() if self._has_projectors else None
 
     def restore(self, moving: Array | None) -> None:
         """Take over projectors that were saved; None where they are not known."""
-        self._known = moving is not None
+        self._has_projectors = moving is not None
         if moving is not None:
             self._mass.moving[...] = moving
             self._mass.whole[...] = (moving == np.eye(moving.shape[1])).all(axis=(1, 2))

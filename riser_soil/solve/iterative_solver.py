@@ -112,7 +112,7 @@ class IterativeSolver(PythonContext, LinearSolver):
 
 
 class _Corrections:
-    """That of the riser and what it may touch, that of the soil, the first once more."""
+    """Corrections by the riser and what it may touch, by the soil, and by the first once more."""
 
     def __init__(self, matrix: PETSc.Mat, near: _Correction, soil: _Correction) -> None:
         first, last = matrix.getOwnershipRange()

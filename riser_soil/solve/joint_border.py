@@ -29,14 +29,14 @@ from riser_soil.solve.step_kernels import Dofs, MatrixWorkspace
 
 
 class JointData(NamedTuple):
-    """m joints: laws; places of their nodes; left (1,): the share of the first gap that is open; forces (m, 12) and
+    """m joints: laws; places of their nodes; share (1,): of the first gap, that is open; forces (m, 12) and
     matrices K (m, 12, 12); sizes (m, 12) of the coordinates. moved (m, 12): number of each dof among those that are
     moved to the border, IN_BAND of the others.
     """
 
     laws: Laws
     places: JointPlaces
-    left: Array
+    share: Array
     forces: Array
     K: Array
     sizes: Array
@@ -44,7 +44,7 @@ class JointData(NamedTuple):
 
 
 class Sides(NamedTuple):
-    """Those of the joints that are on one line: joint, side and node (k,)."""
+    """Sides of joints that are on one line: joint, side and node (k,)."""
 
     joint: IntArray
     side: IntArray
@@ -52,7 +52,7 @@ class Sides(NamedTuple):
 
 
 @njit
-def look(at: SpatialConfiguration, sides: Sides, joints: JointData) -> None:
+def write_places(at: SpatialConfiguration, sides: Sides, joints: JointData) -> None:
     """Write the places of the joints' nodes on a line."""
     places = joints.places
     for k in range(sides.node.size):
@@ -67,10 +67,10 @@ def look(at: SpatialConfiguration, sides: Sides, joints: JointData) -> None:
 @njit
 def find_forces(joints: JointData) -> None:
     """Write the forces of all joints."""
-    found = conjugate(joints.laws, joints.places, joints.left[0])
-    for j in range(found.shape[0]):
+    forces = conjugate(joints.laws, joints.places, joints.share[0])
+    for j in range(forces.shape[0]):
         for i in range(12):
-            joints.forces[j, i] = found[j, i]
+            joints.forces[j, i] = forces[j, i]
 
 
 @njit
@@ -85,11 +85,11 @@ def add_to_line(joints: JointData, sides: Sides, forces: LineForces) -> None:
 def write_matrices(joints: JointData, weights: Weights) -> None:
     """Write the joints' matrices."""
     joints.K[:] = 0.0
-    add_tangent(joints.K, weights.force, joints.laws, joints.places, joints.left[0])
+    add_tangent(joints.K, weights.force, joints.laws, joints.places, joints.share[0])
 
 
 @njit
-def take_sizes(dofs: Dofs, sides: Sides, joints: JointData) -> None:
+def write_sizes(dofs: Dofs, sides: Sides, joints: JointData) -> None:
     """Write the sizes of the coordinates of a line's nodes."""
     for k in range(sides.node.size):
         for i in range(6):
@@ -136,11 +136,11 @@ def add_to_matrix(
 @njit
 def add_energy_of_joints(joints: JointData, energy: Array) -> None:
     """Add the joints' energy to (3,): kinetic, strain, potential [J]."""
-    energy[1] += energy_of(joints.laws, joints.places, joints.left[0])
+    energy[1] += energy_of(joints.laws, joints.places, joints.share[0])
 
 
 def joint_border(beside: Sequence[Part]) -> MakeBorder | None:
-    """That of joints, if they are not too many; None for anything else."""
+    """What makes the border of joints, if they are not too many; None for anything else."""
     if len(beside) != 1 or not isinstance(beside[0], Joints) or len(beside[0].joints) > MOST_JOINTS:
         return None
     return partial(JointBorder, beside[0])
@@ -165,12 +165,12 @@ class JointBorder(Coupling):
         self._packed = Packed(self.data)
 
     def begin(self, before: State, step_to: float, guess: Array) -> None:
-        self.data.left[0] = self._joints.left_at(step_to)
+        self.data.share[0] = self._joints.open_share_at(step_to)
 
     def forces(self) -> list[Bound]:
         data = self._packed
         return [
-            *(Bound(look, line.packed_at, sides, data) for line, sides in self.lines),
+            *(Bound(write_places, line.packed_at, sides, data) for line, sides in self.lines),
             Bound(find_forces, data),
             *(Bound(add_to_line, data, sides, line.packed_forces) for line, sides in self.lines),
         ]
@@ -180,7 +180,7 @@ class JointBorder(Coupling):
         return [Bound(write_matrices, self._packed, line.weights)]
 
     def terms(self) -> list[Bound]:
-        sizes = [Bound(take_sizes, line.packed_dofs, sides, self._packed) for line, sides in self.lines]
+        sizes = [Bound(write_sizes, line.packed_dofs, sides, self._packed) for line, sides in self.lines]
         return sizes + [Bound(add_terms, self._packed, sides, line.packed_dofs) for line, sides in self.lines]
 
     def fill(self) -> list[Bound]:

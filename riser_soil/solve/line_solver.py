@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,7 +20,7 @@ from riser_soil.riser.line_part import LineParts, joined
 from riser_soil.riser.moving_nodes import MovingNodes
 from riser_soil.solve.convergence import CONVERGED, OUTGROWN, StopLimits
 from riser_soil.solve.line_results import LineResults
-from riser_soil.solve.line_system import Coupling, LineSystem
+from riser_soil.solve.line_system import LineSystem
 from riser_soil.solve.newton_settings import NewtonSettings, limits_of
 from riser_soil.solve.packed_line import PackedLine
 from riser_soil.solve.residual_norm import place_of_largest
@@ -42,7 +41,7 @@ def line_solver(system: System) -> LineSolver | None:
     """
     fields, parts = system.model.lines, joined(system.model.parts)
     of_line = {part.line: part for part in parts if isinstance(part, LineParts)}
-    make = _couplings_of(system, [part for part in parts if not isinstance(part, LineParts)])
+    make = _system_with(system, [part for part in parts if not isinstance(part, LineParts)])
     if make is None:
         return None
     lines = list[PackedLine]()
@@ -51,15 +50,15 @@ def line_solver(system: System) -> LineSolver | None:
             return None
         own, at = of_line.get(field) or LineParts(field, []), field.part
         lines.append(PackedLine(own, system.prescribed[at], system.levers[at]))
-    return LineSolver(system, LineSystem(lines, make(lines)))
+    return LineSolver(system, make(lines))
 
 
-def _couplings_of(system: System, parts: Sequence[Part]) -> Callable[[Sequence[PackedLine]], list[Coupling]] | None:
-    """What makes all that stands beside the lines, by the parts that are none of theirs alone; None where these have no
-    kernels.
+def _system_with(system: System, parts: Sequence[Part]) -> Callable[[Sequence[PackedLine]], LineSystem] | None:
+    """What makes the system of the lines, by the parts that act on more than one of them or on soil; None where these
+    have no kernels.
     """
     if not parts:
-        return lambda lines: []
+        return LineSystem
     on_soil, hung = ([part for part in parts if (part.traits.groups == "E") is touching] for touching in (True, False))
     makers: list[MakeBorder | None] = []
     if system.model.others:
@@ -77,9 +76,9 @@ def _couplings_of(system: System, parts: Sequence[Part]) -> Callable[[Sequence[P
         return None
     from riser_soil.solve.dense_border import DenseBorder
 
-    def make(lines: Sequence[PackedLine]) -> list[Coupling]:
+    def make(lines: Sequence[PackedLine]) -> LineSystem:
         border = DenseBorder(lines)
-        return [*(each(border, lines) for each in known), border]
+        return LineSystem(lines, [each(border, lines) for each in known], border)
 
     return make
 
@@ -98,7 +97,7 @@ class LineSolver(StepResults):
         self._nothing = np.zeros(system.numbering.size)
         self._no_work = {part.name: Work() for part in system.model.parts}
         self._results: dict[Line, LineResults] = {}
-        if packed.all_couplings(attrgetter("smooth")):
+        if packed.smooth:
             found = [(packed, packed.line) for packed in self._lines]
             self._results = {
                 line: LineResults(packed, line, system.smooth) for packed, line in found if isinstance(line, Line)
@@ -136,17 +135,18 @@ class LineSolver(StepResults):
             ending, convergence = self.packed.solve(), self.packed.convergence
             self.iterations += convergence.iterations
             if ending == CONVERGED:
-                holds = self.packed.all_couplings(attrgetter("holds"))
+                holds = all(each.holds for each in self._couplings)
                 return self._tangle(trial) or ("" if holds else OUTGROWN), convergence.norms
             if ending != OUTGROWN:
                 break
             for each in self._couplings:
                 each.widen()
-        return self._reason(ending, convergence.norms), convergence.norms
+        return failure_text(ending, convergence.norms, self._place()), convergence.norms
 
     def _limits(self, step: Step, settings: NewtonSettings, at_equilibrium: bool) -> StopLimits:
         """A smooth motion takes an iteration, which answers its load."""
-        smooth, gradual = self.system.smooth, self.system.gradual and self.packed.all_couplings(attrgetter("gradual"))
+        gradual = self.system.gradual and all(each.gradual for each in self._couplings)
+        smooth = self.system.smooth
         answers = smooth or at_equilibrium or bool(step.guess[~self.system.prescribed].any())
         return limits_of(settings, smooth, gradual, answers, step.scheme.step_over_trial)
 
@@ -171,7 +171,7 @@ class LineSolver(StepResults):
         return trial.end_of(State(trial.begun.t, u, v, a, dt=trial.begun.dt))
 
     def _forces(self) -> Forces:
-        """Those of the last trial; on the free dofs of soil they are in balance."""
+        """Forces of the last trial; on the free dofs of soil they are in balance."""
         forces = Forces.zeros(len(self._nothing))
         for packed in self._lines:
             found, at = packed.forces, packed.line.part
@@ -222,9 +222,6 @@ class LineSolver(StepResults):
             energy += each.add_account(before, solution.state, work)
         self.system.clock.add("line solver", since)
         return energy, work
-
-    def _reason(self, ending: str, norms: list[float]) -> str:
-        return failure_text(ending, norms, self._place())
 
     def _place(self) -> str:
         """The largest residual, in words."""

@@ -7,8 +7,7 @@ Kernels are bound to their arguments once, so that an iteration is three calls.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from operator import attrgetter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,12 +19,16 @@ from riser_soil.solve.convergence import ITERATING, NOT_SOLVED, OUTGROWN, Conver
 from riser_soil.solve.newton_loop import iterate
 from riser_soil.solve.packed_line import PackedLine
 
+if TYPE_CHECKING:
+    from riser_soil.solve.dense_border import DenseBorder
+
 
 class Coupling:
     """Unknowns and coupling terms beside the lines, such as joints and condensed soil; this base has none.
 
-    Methods that return kernels do so for one phase of a Newton iteration. smooth: whether nothing touches the lines;
-    gradual: whether a tangent may be kept beside contact, see `System`; parts: whose forces are evaluated here.
+    Methods that return kernels do so for one phase of a Newton iteration; they write to lines and border. smooth:
+    whether nothing touches the lines; gradual: whether a tangent may be kept beside contact, see `System`; parts: whose
+    forces are evaluated here.
     """
 
     smooth = gradual = True
@@ -80,16 +83,6 @@ class Coupling:
         """Kernels that add to the lines' bands."""
         return []
 
-    def factorise(self, failure: Packed) -> list[Bound]:
-        """Kernels that factorise what couples the lines, whose bands are factorised."""
-        return []
-
-    def couple(self) -> list[Bound]:
-        """Kernels that solve for the border's increments (forward elimination), and take what they move off the lines'
-        residuals.
-        """
-        return []
-
     def account(self, energy: Packed) -> list[Bound]:
         """Kernels that account for a step, and add to the energy (3,)."""
         return []
@@ -105,12 +98,14 @@ class Coupling:
 class LineSystem:
     """Residual, tangent and solution of lines and bodies with their couplings, by kernels, for Newton's loop.
 
-    convergence: of the step. evaluate, write_tangent, renew_contact, correct: pieces of the loop, which are looked at
-    alone, too.
+    border: of the bands, None where nothing couples them. convergence: of the step. evaluate, write_tangent,
+    renew_contact, correct: pieces of the loop, which are looked at alone, too.
     """
 
-    def __init__(self, lines: Sequence[PackedLine], couplings: Sequence[Coupling]) -> None:
-        self.lines, self.couplings = lines, couplings
+    def __init__(
+        self, lines: Sequence[PackedLine], couplings: Sequence[Coupling] = (), border: DenseBorder | None = None
+    ) -> None:
+        self.lines, self.couplings, self.border = lines, couplings, border
         self._norms, self._above = np.zeros(3), np.zeros(1, dtype=np.bool_)
         self._failure = np.zeros(1, dtype=np.int64)
         self._bind()
@@ -123,13 +118,14 @@ class LineSystem:
         """Kernels of all couplings."""
         return [kernel for each in self.couplings for kernel in of(each)]
 
-    def all_couplings(self, holds: Callable[[Coupling], bool]) -> bool:
-        """Whether something holds of all couplings."""
-        return all(map(holds, self.couplings))
+    @property
+    def smooth(self) -> bool:
+        """Whether nothing beside the lines touches them."""
+        return all(each.smooth for each in self.couplings)
 
     def _bind(self) -> None:
         """Bind the kernels of the loop to where they read and write."""
-        lines, coupled, smooth = self.lines, self._kernels, self.all_couplings(attrgetter("smooth"))
+        lines, coupled, border = self.lines, self._kernels, self.border
         sums, norms, above, failure = map(Packed, (np.zeros(5), self._norms, self._above, self._failure))
         evaluate = [
             *(kernel for line in lines for kernel in line.evaluate()),
@@ -143,12 +139,13 @@ class LineSystem:
         ]
         bulk, contact, held_bulk, held_contact = (
             [kernel for line in each for kernel in line]
-            for each in zip(*(line.tangents(not smooth) for line in lines), strict=True)
+            for each in zip(*(line.tangents(not self.smooth) for line in lines), strict=True)
         )
         joined = coupled(lambda it: it.bulk_tangent())
         contact += coupled(lambda it: it.tangent())
-        fill = [*(line.fill() for line in lines), *coupled(lambda it: it.fill())]
-        factors = [*fill, *(line.factorise(failure) for line in lines), *coupled(lambda it: it.factorise(failure))]
+        move, schur, solve = (border.move_rows(), border.factorise(failure), border.solve()) if border else ([], [], [])
+        fill = [*(line.fill() for line in lines), *coupled(lambda it: it.fill()), *move]
+        factors = [*fill, *(line.factorise(failure) for line in lines), *schur]
         sizes = [line.write_sizes for line in lines]
         terms = [Bound(kernels.write_terms, line.packed_workspace, line.packed_dofs) for line in lines]
         looked = [Bound(kernels.find_above, line.packed_dofs, above) for line in lines]
@@ -158,7 +155,7 @@ class LineSystem:
         ]  # fmt: skip
         renew = [*bulk, *joined, *contact, *factors]
         touch = [*contact, *factors] if contact else []
-        improve = [*coupled(lambda it: it.couple()), *(line.improve() for line in lines)]
+        improve = [*solve, *(line.improve() for line in lines)]
         self._look_for_tangles = in_turn(*(kernel for line in lines for kernel in line.look_for_tangles))
         self.evaluate, self._probe = in_turn(*evaluate), in_turn(*probe)
         self._renew, self.renew_contact, self._improve = in_turn(*renew), in_turn(*touch), in_turn(*improve)

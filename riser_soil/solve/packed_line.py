@@ -117,7 +117,7 @@ class PackedLine:
 
     @property
     def begun(self) -> Configuration:
-        """Where the step began, as `move_start` has placed it."""
+        """The line's configuration where the step began, as `move_start` has placed it."""
         return self._trials.then.at
 
     def write_residual(self, out: Array) -> Bound:

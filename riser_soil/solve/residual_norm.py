@@ -67,7 +67,7 @@ class ResidualNorm:
         return math.sqrt(self._system.sum([square_of(f, self._levers, 0, f.size)])[0])
 
     def largest(self, f: Array) -> str:
-        """Where it is largest, in words."""
+        """Place of a residual's largest entry, of this rank's rows (owned,), in words."""
         return place_of_largest(self._system, f / self._levers, self._system.numbering.first)
 
     def in_play(self, forces: Forces) -> float:

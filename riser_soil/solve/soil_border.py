@@ -138,9 +138,9 @@ class SoilBorder(Coupling):
         self._system, self._packed, self._touching, self._soil = system, packed, touching, soil
         self._top, self.parts = soil.top, (*touching.parts, soil)
         self._motion = Packed(self._motion_of(np.empty(0, dtype=np.int64)))
-        self._dense, self._border, self._held = dense, dense.of[packed], Packed(_held(0))
-        self._seen: Array = np.empty((0, 3))
-        self._reached: Reached | None = None  # as it was taken last
+        self._dense, self._border, self._data = dense, dense.of[packed], Packed(_soil_data(0))
+        self._watched_at: Array = np.empty((0, 3))  # places of the top when what may touch was looked for
+        self._reached: Reached | None = None  # as there is room for
         self._prescribed: Reached = soil.top.reached  # as the system has it
 
     def _motion_of(self, nodes: IntArray) -> TopMotion:
@@ -161,28 +161,28 @@ class SoilBorder(Coupling):
         packed, border = self._packed, self._border
         return [
             Bound(move_top, Packed(self._touching.deformed), self._motion, border),
-            Bound(begin_border, self._held, border),
+            Bound(begin_border, self._data, border),
             *self._touching.forces(self._motion, packed.packed_at, packed.packed_forces, border),
         ]
 
     def norms(self, sums: Packed) -> list[Bound]:
-        return [Bound(add_norm_of_soil, self._held, self._border, sums)]
+        return [Bound(add_norm_of_soil, self._data, self._border, sums)]
 
     def outgrown(self, failure: Packed) -> list[Bound]:
         return [Bound(find_outgrown, Packed(self._touching.touched), failure)]
 
     def tangent(self) -> list[Bound]:
         """Kernels that write the border's tangent, and add contact's."""
-        cleared, packed = Bound(clear_border, self._held, self._border), self._packed
+        cleared, packed = Bound(clear_border, self._data, self._border), self._packed
         return [cleared, *self._touching.tangent(self._motion, packed.packed_at, packed.K, self._border)]
 
     def terms(self) -> list[Bound]:
         packed = self._packed
         coordinates = Packed(packed.dofs.sizes), Packed(packed.dofs.terms)
-        return [*packed.terms_of(self.tangent()), Bound(add_terms, self._held, self._border, *coordinates)]
+        return [*packed.terms_of(self.tangent()), Bound(add_terms, self._data, self._border, *coordinates)]
 
     def above(self, above: Packed) -> list[Bound]:
-        return [Bound(find_above, self._held, self._border, above)]
+        return [Bound(find_above, self._data, self._border, above)]
 
     def begin(self, before: State, step_to: float, guess: Array) -> None:
         if self._soil.outgrown:
@@ -192,11 +192,11 @@ class SoilBorder(Coupling):
         self._touching.deformed[...] = accepted
         self._touching.begin()
         if self._reached is not self._top.reached or self._has_moved(accepted):
-            self._look(tried=False)
+            self._watch(tried=False)
         self._motion.value.accepted[...] = accepted
-        held, at = self._held.value, self._top.reached.dofs
-        held.accepted[...] = committed.ravel()[at]
-        np.dot(held.stiffness, held.accepted, out=held.holding)
+        data, at = self._data.value, self._top.reached.dofs
+        data.accepted[...] = committed.ravel()[at]
+        np.dot(data.stiffness, data.accepted, out=data.holding)
         self._moved[:] = self._top.own(guess)[at]
         self._prescribe_anew()
 
@@ -212,35 +212,35 @@ class SoilBorder(Coupling):
         return True
 
     def _has_moved(self, accepted: Array) -> bool:
-        return bool(np.abs(accepted - self._seen).max() > self._touching.slack)
+        return bool(np.abs(accepted - self._watched_at).max() > self._touching.slack)
 
     def widen(self) -> None:
         """Reach and watch what the last trial touched."""
         if self._touching.touched.met.any():
             self._soil.meet(np.flatnonzero(self._touching.touched.met))
             self._soil.rebuild(self._touching.contact.accepted)
-        self._look(tried=True)
+        self._watch(tried=True)
 
-    def _look(self, tried: bool) -> None:
+    def _watch(self, tried: bool) -> None:
         """Find what may touch near the accepted place, and near the last trial."""
         if self._reached is not self._top.reached:
-            self._take(self._top.reached)
+            self._reach(self._top.reached)
         nodes = self._touching.look(tried)
         self._motion.renew(self._motion_of(nodes))
-        self._seen = self._touching.deformed.copy()
+        self._watched_at = self._touching.deformed.copy()
 
-    def _take(self, reached: Reached) -> None:
-        """Take other dofs."""
-        held = _held(len(reached.dofs))
-        held.stiffness[...] = reached.stiffness
-        self._held.renew(held)
+    def _reach(self, reached: Reached) -> None:
+        """Make room for other reached dofs."""
+        data = _soil_data(len(reached.dofs))
+        data.stiffness[...] = reached.stiffness
+        self._data.renew(data)
         self._dense.make_room(len(reached.dofs))
         self._reached = reached
 
     @property
     def _moved(self) -> Array:
         """Increments (na,) of the reached dofs in the last trial."""
-        return np.asarray(self._border.value.u[: len(self._held.value.holding)])
+        return np.asarray(self._border.value.u[: len(self._data.value.holding)])
 
     def put_increments(self, weights: Weights, u: Array, v: Array, a: Array) -> None:
         dofs, moved = self._top.offset + self._top.reached.dofs, self._moved
@@ -265,6 +265,6 @@ class SoilBorder(Coupling):
         return energy
 
 
-def _held(count: int) -> SoilData:
+def _soil_data(count: int) -> SoilData:
     """For so many dofs."""
     return SoilData(np.zeros((count, count)), *np.zeros((3, count)))

@@ -45,7 +45,7 @@ class PivotCounter:
     def __init__(self, system: System) -> None:
         self.system = system
         self._matrix: Matrix | None = None
-        self._seen: Array = np.zeros(0)
+        self._values: Array = np.zeros(0)  # of the others' rows, as they were counted
         self._others = 0
 
     def count(self) -> int:
@@ -61,10 +61,10 @@ class PivotCounter:
         """Negative pivots of the rows behind this rank's first ones; collective."""
         system, (starts, _, values) = self.system, self.system.matrix.stored.csr()
         present = values[starts[rows] :]
-        seen = self._matrix is system.matrix and np.array_equal(present, self._seen)
-        if not all_of(system.comm, seen):
+        unchanged = self._matrix is system.matrix and np.array_equal(present, self._values)
+        if not all_of(system.comm, unchanged):
             self._others = _negative_pivots_behind(system, rows)
-            self._matrix, self._seen = system.matrix, present.copy()
+            self._matrix, self._values = system.matrix, present.copy()
         return self._others
 
 

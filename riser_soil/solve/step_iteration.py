@@ -44,7 +44,7 @@ class StepIteration:
         self.system, self.settings, self.iterations = system, settings, 0
         self._trial: StepTrial | None = None
         self._state: State | None = None  # of the unknowns that were tried last
-        self._known: State | None = None  # the state at which the forces were found last
+        self._forces_at: State | None = None  # the state of the forces found last
         self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
         self._limited: list[Limited] = with_role(system.model.parts, Limited)
         self._elastic = ElasticShare(with_role(system.model.parts, Yielding))
@@ -92,8 +92,8 @@ class StepIteration:
 
     def _balance(self, state: State) -> Array:
         """Local residual at a state."""
-        if state is not self._known:
-            self._forces, self._known = self.system.forces(state), state
+        if state is not self._forces_at:
+            self._forces, self._forces_at = self.system.forces(state), state
         return self._step.balance(self._forces)
 
     def _require_admissible(self, end: State) -> None:
@@ -148,9 +148,9 @@ class StepIteration:
         what flows on as before, it knows which points yield.
         """
         linear = self._x
-        left = self._norm_of(self.residual(linear))
+        by_linear = self._norm_of(self.residual(linear))
         norm = self._respond_to(self._balance(self._unmoved(guess)), guess)
-        if self._norm_of(self.residual(self._x)) < left:
+        if self._norm_of(self.residual(self._x)) < by_linear:
             self._convergence.norms[-1] = norm
         else:
             self._x = linear
@@ -242,7 +242,7 @@ class StepIteration:
         self.loop.renew()
 
     def _begin(self, step: Step, at_equilibrium: bool) -> None:
-        self._trial, self._state, self._known = StepTrial(self.system, step), None, None
+        self._trial, self._state, self._forces_at = StepTrial(self.system, step), None, None
         self._x = self.system.numbering.to_global(self._trial.begun.u)
         guessed = any_of(self.system.comm, bool(self._x.any()))
         near = self.system.smooth and self._moves

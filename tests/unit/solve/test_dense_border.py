@@ -79,10 +79,10 @@ def test_bands_with_moved_dofs_and_soil_are_solved_as_the_whole_matrix() -> None
         line.dofs.residual[...] = load[a:b].reshape(-1, NDOF)
 
     failure = np.zeros(1, dtype=np.int64)
-    in_turn(*border.fill())()
+    in_turn(*border.move_rows())()
     for line in lines:
         assert banded.factorise(line.workspace.ab, line.workspace.pivots, line.workspace.band)
-    in_turn(*border.factorise(Packed(failure)), *border.couple())()
+    in_turn(*border.factorise(Packed(failure)), *border.solve())()
     assert failure[0] == NONE
     solution = -np.concatenate([np.zeros(starts[-1]), border.of[lines[0]].value.u])
     for line, (a, b) in ranges:

@@ -19,7 +19,6 @@ from riser_soil.riser.part_kernels import Border
 from riser_soil.riser.section_forces import SectionForces
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.solve.bordered_band import band_of
-from riser_soil.solve.dense_border import DenseBorder
 from riser_soil.solve.line_solver import LineSolver
 from riser_soil.solve.line_system import LineSystem
 from riser_soil.solve.soil_border import SoilBorder
@@ -145,7 +144,7 @@ def at_first_step(case: str) -> LineSystem:
 def soil_in(packed: LineSystem, of: Callable[[Border], Array]) -> Array:
     """What a border has of soil's reached dofs; none without soil."""
     soil = next((each for each in packed.couplings if isinstance(each, SoilBorder)), None)
-    return np.empty(0) if soil is None else of(soil._border.value)[: len(soil._held.value.holding)]
+    return np.empty(0) if soil is None else of(soil._border.value)[: len(soil._data.value.holding)]
 
 
 def increments(packed: LineSystem) -> Array:
@@ -170,7 +169,8 @@ def residual(packed: LineSystem, x: Array) -> Array:
 def matrix(packed: LineSystem) -> Array:
     """The whole tangent (n, n) of lines and soil: bands, and the border with what couples it."""
     packed.write_tangent()
-    border = next(each for each in packed.couplings if isinstance(each, DenseBorder))
+    border = packed.border
+    assert border is not None
     first = np.cumsum([0, *(line.line.size for line in packed.lines)])
     ns = len(soil_in(packed, lambda border: border.u))
     n, corner = first[-1] + ns, border.of[packed.lines[0]].value.corner
@@ -223,7 +223,7 @@ def test_terms_of_what_soil_and_line_do_to_each_other() -> None:
     residual(packed, shaken_increments(packed)[0])
     K = np.abs(matrix(packed))
     soil = next(each for each in packed.couplings if isinstance(each, SoilBorder))
-    moved = np.abs(soil._held.value.accepted + soil_in(packed, lambda border: border.u))
+    moved = np.abs(soil._data.value.accepted + soil_in(packed, lambda border: border.u))
     sizes = np.concatenate([*(line.dofs.sizes.ravel() for line in packed.lines), moved])
     touched, n = soil._packed, len(sizes) - len(moved)
     at = slice(touched.line.offset, touched.line.offset + touched.line.size)
@@ -233,7 +233,7 @@ def test_terms_of_what_soil_and_line_do_to_each_other() -> None:
     for rows, block in zip(own.rows, np.abs(own.K), strict=True):
         by_itself[rows] += block @ sizes[at][rows]
     assert K[n:, at].any()
-    np.testing.assert_allclose(soil._held.value.terms, K[n:] @ sizes, rtol=1e-12)
+    np.testing.assert_allclose(soil._data.value.terms, K[n:] @ sizes, rtol=1e-12)
     np.testing.assert_allclose(touched.dofs.terms.ravel(), by_itself + K[at, n:] @ moved, rtol=1e-12)
 
 
@@ -269,7 +269,8 @@ def test_statics_and_steps_eliminate_the_fewest_rows_that_joints_have(case: str,
     assert len(band.rows[1]) == border
     stage = last_stage(case, "compiled")
     assert stage.newton.lines is not None
-    in_steps = next(each for each in stage.newton.lines.packed.couplings if isinstance(each, DenseBorder))
+    in_steps = stage.newton.lines.packed.border
+    assert in_steps is not None
     assert len(in_steps.of[stage.newton.lines.packed.lines[0]].value.residual) == border
     load = np.random.default_rng(3).normal(size=system.numbering.free)
     system.assemble(State.at_rest(0.0, system.numbering.size), STATIC)

@@ -171,7 +171,7 @@ def at_first_step(case: str) -> tuple[LineSystem, System]:
 def test_the_tangent_is_the_slope_of_the_residual(case: str) -> None:
     """The tangent of riser and border; it is another one without contact's share."""
     riser, system = at_first_step(case)
-    (line,), (beside, _) = riser.lines, riser.couplings
+    (line,), (beside,) = riser.lines, riser.couplings
     assert isinstance(beside, SoilBorder)
     border = beside._border.value
     step, dofs, n = line.step, line.dofs, line.line.size
@@ -191,7 +191,7 @@ def test_the_tangent_is_the_slope_of_the_residual(case: str) -> None:
             matrix[i, j] = workspace.ab[i, j - i + len(workspace.band)]
     matrix[:n, n:], matrix[n:, :n], matrix[n:, n:] = border.right, border.below.T, border.corner
     assert np.abs(border.right[free[:n]]).max() > 0.0
-    assert np.abs(border.corner - beside._held.value.stiffness).max() > 0.0
+    assert np.abs(border.corner - beside._data.value.stiffness).max() > 0.0
     random = np.random.default_rng(2)
     for _ in range(3):
         direction = random.normal(size=len(x0)) * free
