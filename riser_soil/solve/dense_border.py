@@ -7,7 +7,7 @@ their rows and columns are moved out of the bands, which have ones on the diagon
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +18,6 @@ from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
 from riser_soil.core.dense import PIVOT
 from riser_soil.riser.part_kernels import Border
-from riser_soil.solve.line_system import Coupling
 from riser_soil.solve.packed_line import PackedLine
 from riser_soil.solve.step_kernels import NONE, SINGULAR, Dofs, MatrixWorkspace
 
@@ -216,6 +215,3 @@ class DenseBorder:
     def _of(self, line: PackedLine) -> tuple[Packed, Packed, Packed]:
         """A line's dofs, border and factors."""
         return line.packed_dofs, self.of[line], self._factors[line]
-
-
-MakeBorder = Callable[[DenseBorder, Sequence[PackedLine]], Coupling]

@@ -21,8 +21,8 @@ from riser_soil.core.part import Part, State, Weights
 from riser_soil.riser.configuration import SpatialConfiguration
 from riser_soil.riser.part_kernels import Border, LineForces
 from riser_soil.solve.bordered_band import fewest_rows
-from riser_soil.solve.dense_border import IN_BAND, DenseBorder, MakeBorder, clear_moved
-from riser_soil.solve.line_system import Coupling
+from riser_soil.solve.dense_border import IN_BAND, DenseBorder, clear_moved
+from riser_soil.solve.line_system import Coupling, MakeCoupling
 from riser_soil.solve.newton_settings import MOST_JOINTS
 from riser_soil.solve.packed_line import PackedLine
 from riser_soil.solve.step_kernels import Dofs, MatrixWorkspace
@@ -139,7 +139,7 @@ def add_energy_of_joints(joints: JointData, energy: Array) -> None:
     energy[1] += energy_of(joints.laws, joints.places, joints.share[0])
 
 
-def joint_border(beside: Sequence[Part]) -> MakeBorder | None:
+def joint_border(beside: Sequence[Part]) -> MakeCoupling | None:
     """What makes the border of joints, if they are not too many; None for anything else."""
     if len(beside) != 1 or not isinstance(beside[0], Joints) or len(beside[0].joints) > MOST_JOINTS:
         return None

@@ -20,7 +20,7 @@ from riser_soil.riser.line_part import LineParts, joined
 from riser_soil.riser.moving_nodes import MovingNodes
 from riser_soil.solve.convergence import CONVERGED, OUTGROWN, StopLimits
 from riser_soil.solve.line_results import LineResults
-from riser_soil.solve.line_system import LineSystem
+from riser_soil.solve.line_system import LineSystem, MakeCoupling
 from riser_soil.solve.newton_settings import NewtonSettings, limits_of
 from riser_soil.solve.packed_line import PackedLine
 from riser_soil.solve.residual_norm import place_of_largest
@@ -30,7 +30,6 @@ from riser_soil.solve.step_trial import StepTrial
 
 if TYPE_CHECKING:
     from riser_soil.contact.contact import RiserContact
-    from riser_soil.solve.dense_border import MakeBorder
 
 MOST_STARTS = 8  # times that a step is begun with other pairs or dofs before it is given up
 
@@ -60,7 +59,7 @@ def _system_with(system: System, parts: Sequence[Part]) -> Callable[[Sequence[Pa
     if not parts:
         return LineSystem
     on_soil, hung = ([part for part in parts if (part.traits.groups == "E") is touching] for touching in (True, False))
-    makers: list[MakeBorder | None] = []
+    makers: list[MakeCoupling | None] = []
     if system.model.others:
         from riser_soil.solve.soil_border import border_on_soil
 

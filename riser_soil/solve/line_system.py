@@ -95,6 +95,9 @@ class Coupling:
         return Energy()
 
 
+MakeCoupling = Callable[["DenseBorder", Sequence[PackedLine]], Coupling]
+
+
 class LineSystem:
     """Residual, tangent and solution of lines and bodies with their couplings, by kernels, for Newton's loop.
 

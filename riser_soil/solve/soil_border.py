@@ -23,8 +23,8 @@ from riser_soil.core.part import Energy, Part, State, Weights, Work
 from riser_soil.core.system import System
 from riser_soil.riser.part_kernels import Border
 from riser_soil.soil.condensed import CondensedSoil, Reached
-from riser_soil.solve.dense_border import DenseBorder, MakeBorder
-from riser_soil.solve.line_system import Coupling
+from riser_soil.solve.dense_border import DenseBorder
+from riser_soil.solve.line_system import Coupling, MakeCoupling
 from riser_soil.solve.packed_line import PackedLine
 from riser_soil.solve.residual_norm import above_round_off
 from riser_soil.solve.step_kernels import TOO_NARROW
@@ -111,7 +111,7 @@ def find_above(soil: SoilData, border: Border, above: BoolArray) -> None:
     above[0] |= above_round_off(border.residual[: soil.holding.size], soil.terms)
 
 
-def border_on_soil(system: System, beside: Sequence[Part]) -> MakeBorder | None:
+def border_on_soil(system: System, beside: Sequence[Part]) -> MakeCoupling | None:
     """What makes the border of lines on condensed soil, one of which touches it; None where a part has no kernels."""
     contact = next((part for part in beside if isinstance(part, SoilContact)), None)
     soil = next((part for part in beside if isinstance(part, CondensedSoil)), None)
