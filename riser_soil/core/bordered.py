@@ -21,18 +21,14 @@ from riser_soil.core.compiled import njit
 def condense(
     ab: Array, pivots: IntArray, band: Size, rows: IntArray, right: Array, below: Array, schur: Array
 ) -> None:
-    """Subtract V B^-1 U from the border's matrix (nb, nb). rows (m,): coupled ones, in increasing order. What is solved
-    for is U's columns, or the inverse in these rows, whichever are fewer.
-    """
+    """Subtract V B^-1 U from the border's matrix (nb, nb). rows (m,): coupled ones, in increasing order."""
     columns = _coupled_columns(rows, right, below)
     U, V = np.empty((rows.size, columns.size)), np.empty((columns.size, rows.size))
     for i in range(rows.size):
         for j in range(columns.size):
             U[i, j], V[j, i] = right[rows[i], columns[j]], below[rows[i], columns[j]]
-    if columns.size < rows.size:
-        product = np.dot(V, banded.solve_at(ab, pivots, rows, U, band))
-    else:
-        product = np.dot(V, np.dot(banded.solve_at(ab, pivots, rows, np.eye(rows.size), band), U))
+    inverse = banded.solve_at(ab, pivots, rows, np.eye(rows.size), band)
+    product = np.dot(V, np.dot(inverse, U))
     for i in range(columns.size):
         for j in range(columns.size):
             schur[columns[i], columns[j]] -= product[i, j]
