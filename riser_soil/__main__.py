@@ -9,7 +9,7 @@ import sys
 import tempfile
 
 from riser_soil.commands.app import app
-from riser_soil.commands.exit_status import rank
+from riser_soil.core.environment import rank
 from riser_soil.errors import Interruption, WriteError
 from riser_soil.interruption import handling_signals, latest
 from riser_soil.standard_output import failsafe_output

@@ -5,8 +5,9 @@ from typing import Annotated
 
 import typer
 
-from riser_soil.commands.exit_status import expected_errors, rank
+from riser_soil.commands.exit_status import expected_errors
 from riser_soil.commands.scenes import Overrides, SceneFile, at_least_one, placed, positive, read_solved, read_start
+from riser_soil.core.environment import rank
 from riser_soil.errors import ResultsError, SolveError
 
 _NAMED = 5

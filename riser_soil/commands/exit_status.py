@@ -9,6 +9,7 @@ from contextlib import contextmanager
 
 import typer
 
+from riser_soil.core.environment import rank, size
 from riser_soil.errors import Interruption, RiserSoilError, SceneError, WriteError, is_full
 from riser_soil.interruption import default_signal_handlers, unmasked
 
@@ -77,20 +78,6 @@ def _way_to(module: str) -> str:
     if package in ELSEWHERE:
         return "Debian, conda-forge or the project's Docker image bring it (docs/running.md)"
     return f"pip install 'riser_soil[{EXTRAS[package]}]' brings it" if package in EXTRAS else ""
-
-
-def rank() -> int:
-    """This process's number under mpirun, without importing MPI; 0 alone."""
-    return _from_environment("OMPI_COMM_WORLD_RANK", "PMI_RANK") or 0
-
-
-def size() -> int:
-    """Number of processes under mpirun, without importing MPI; 1 alone."""
-    return _from_environment("OMPI_COMM_WORLD_SIZE", "PMI_SIZE") or 1
-
-
-def _from_environment(*names: str) -> int | None:
-    return next((int(os.environ[name]) for name in names if os.environ.get(name, "").isdecimal()), None)
 
 
 def _print_once(message: str) -> None:

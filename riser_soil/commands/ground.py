@@ -5,8 +5,9 @@ from typing import Annotated
 
 import typer
 
-from riser_soil.commands.exit_status import expected_errors, rank
+from riser_soil.commands.exit_status import expected_errors
 from riser_soil.commands.scenes import Overrides, SceneFile, placed, read
+from riser_soil.core.environment import rank
 
 
 def material(

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from riser_soil.commands.exit_status import expected_errors, rank
+from riser_soil.commands.exit_status import expected_errors
 from riser_soil.commands.scenes import guessed, placed_in, refuse_existing
+from riser_soil.core.environment import rank
 from riser_soil.errors import MeshError, SceneError
 
 if TYPE_CHECKING:

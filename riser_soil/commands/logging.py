@@ -15,7 +15,8 @@ from typing import Annotated, Any, Literal, TextIO
 import typer
 
 from riser_soil import __version__
-from riser_soil.commands.exit_status import expected_errors, rank
+from riser_soil.commands.exit_status import expected_errors
+from riser_soil.core.environment import rank
 from riser_soil.errors import ResultsError
 
 Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="print warnings and errors alone")]

@@ -6,8 +6,9 @@ from typing import Annotated, Any
 
 import typer
 
-from riser_soil.commands.exit_status import expected_errors, rank
+from riser_soil.commands.exit_status import expected_errors
 from riser_soil.commands.scenes import Period, RunFolder, StageName, positive
+from riser_soil.core.environment import rank
 from riser_soil.errors import ResultsError
 
 AnyStage = Annotated[

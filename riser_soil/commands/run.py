@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from riser_soil.commands.exit_status import expected_errors, rank, size
+from riser_soil.commands.exit_status import expected_errors
 from riser_soil.commands.scenes import (
     Overrides,
     SceneFile,
@@ -16,6 +16,7 @@ from riser_soil.commands.scenes import (
     read_start,
     result_folder,
 )
+from riser_soil.core.environment import rank, size
 from riser_soil.errors import SceneError
 from riser_soil.interruption import handling_signals
 

@@ -22,6 +22,7 @@ from riser_soil.core.rows import Size, add_multiple
 
 HUGE = 1e300  # a pivot beyond it is no number to divide by
 THRESHOLD = 0.1
+OF_LINES = 5, 11  # entries beside the diagonal, in a plane and in space, for which loops over a row are compiled
 
 
 class SingularError(Exception):
@@ -207,10 +208,11 @@ def solve_symmetric(upper: Array, loads: Array) -> Array:
 
     upper (b + 1, n): as scipy.linalg.solveh_banded takes it. Raises LinAlgError where the matrix is singular.
     """
-    b, n = len(upper) - 1, upper.shape[1]
-    band, width, pivots = np.zeros((n + b, 3 * b + 1)), np.zeros(b), np.zeros(n, dtype=np.int64)
-    for d in range(min(b + 1, n)):
-        band[: n - d, b + d] = band[d:n, b - d] = upper[b - d, d:]
+    given, n = len(upper) - 1, upper.shape[1]
+    b = next((width for width in OF_LINES if width >= given), given)  # those of lines are compiled sooner or later
+    (band, width), pivots = workspace(n, b), np.zeros(n, dtype=np.int64)
+    for d in range(min(given + 1, n)):
+        band[: n - d, b + d] = band[d:n, b - d] = upper[given - d, d:]
     if not factorise(band, pivots, width):
         raise np.linalg.LinAlgError("singular matrix")
     columns = np.array(loads.T, order="C")

@@ -10,6 +10,7 @@ are inlined where others call them: tuples then stay in registers, which halves 
 from __future__ import annotations
 
 import errno
+import gc
 import hashlib
 import os
 import platform
@@ -20,7 +21,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache, update_wrapper
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 os.environ.setdefault("NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1")  # colorama, if there, writes to standard output
 
@@ -29,14 +30,24 @@ from numba import config
 from numba.core import event
 from numba.extending import overload
 
-from riser_soil.core.environment import processor
-from riser_soil.core.kernel_cache import caching_in, dependencies, first_alone, mark_used, remove_old, version_folder
+from riser_soil.core.environment import processor, rank
+from riser_soil.core.kernel_cache import (
+    caching_in,
+    dependencies,
+    first_alone,
+    is_done,
+    is_free,
+    mark_used,
+    remove_old,
+    version_folder,
+)
 from riser_soil.core.kernel_sources import PACKAGE, SOURCES
 from riser_soil.core.kinds import Kind, kind_of, mark
 
 NAME = PACKAGE.name
 ROOM = 1 << 26  # bytes that all kernels need, and some more
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "arcp"}}
+WITHIN = OPTIONS | {"no_cfunc_wrapper": True}  # of what compiled code alone calls: a tenth of its compilation less
 ANNOUNCEMENT = "compiling kernels (once, about a minute)"
 
 
@@ -52,7 +63,7 @@ class Kernel:
         self._made: dict[tuple[Any, ...], Any] = {}  # by numba's types of the arguments
         self._latest: dict[tuple[type, ...], Any] = {}
         update_wrapper(self, function)
-        overload(self, jit_options=OPTIONS | {"forceinline": not apart}, strict=False)(lambda *_: function)
+        overload(self, jit_options=WITHIN | {"forceinline": not apart}, strict=False)(lambda *_: function)
 
     def __call__(self, *arguments: Any) -> Any:
         """What was compiled for such types is called, and looked for anew where numba says with a TypeError that arrays
@@ -73,7 +84,7 @@ class Kernel:
         """What is compiled for arguments; a kind, such as arrays that are not packed, may be of several types."""
         signature = tuple(map(numba.typeof, arguments))
         if signature not in self._made:
-            with keeping(self.py_func, kind_of(arguments)):
+            with keeping(place_of(self.py_func, kind_of(arguments))):
                 self._made[signature] = numba.njit([signature], cache=True, **OPTIONS)(self.py_func)
         return self._made[signature]
 
@@ -86,18 +97,59 @@ def njit(function: Callable[..., Any], apart: bool = False) -> Any:
     return Kernel(function, apart)
 
 
-@contextmanager
-def keeping(function: Callable[..., Any], kind: Kind, *modules: str) -> Iterator[None]:
-    """What numba compiles meanwhile of a function, for arguments of a kind, stays on disk, or is found there.
+class Place(NamedTuple):
+    """Where machine code stays on disk: its folder, and its name among those that one process makes at a time."""
 
-    modules: others than its own that the machine code comes from. One process does it at a time, see `first_alone`.
+    folder: Path
+    name: str
+
+    @property
+    def filled(self) -> bool:
+        """Whether a process has compiled it."""
+        return is_done(FOLDER, self.name)
+
+    @property
+    def free(self) -> bool:
+        """Whether none has compiled it, nor does now."""
+        return is_free(FOLDER, self.name)
+
+
+def place_of(function: Callable[..., Any], kind: Kind, *modules: str) -> Place:
+    """The place of a function's machine code for arguments of a kind. modules: others than its own that it comes from.
     """
-    since, counted, name = time.process_time(), _announcer.seconds, f"{function.__module__}.{function.__qualname__}"
-    word, mine = dependencies((function.__module__, *modules), kind), f"{name}_{mark(kind)}"
-    with caching_in(str(version_folder(FOLDER / mine, word))), first_alone(FOLDER, f"{mine} {word}"):
+    word, mine = dependencies((function.__module__, *modules), kind), f"{_name(function)}_{mark(kind)}"
+    return Place(FOLDER / mine / word, f"{mine} {word}")
+
+
+def _name(function: Callable[..., Any]) -> str:
+    return f"{function.__module__}.{function.__qualname__}"
+
+
+@contextmanager
+def keeping(place: Place) -> Iterator[None]:
+    """What numba compiles meanwhile stays at a place, or is found there. One process does it at a time, see
+    `first_alone`.
+    """
+    since, counted = time.process_time(), _announcer.seconds
+    folder = version_folder(place.folder.parent, place.folder.name)
+    with caching_in(str(folder)), first_alone(FOLDER, place.name), _uncollected():
         yield
     if _announcer.seconds > counted:  # it wasn't there
         _announcer.seconds = counted + time.process_time() - since
+
+
+@contextmanager
+def _uncollected() -> Iterator[None]:
+    """Meanwhile garbage is not looked for: the compiler's many objects live, and looking at them takes a tenth of its
+    time.
+    """
+    collects = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collects:
+            gc.enable()
 
 
 def version() -> str:
@@ -166,12 +218,8 @@ def _taken(folder: Path) -> int:
 
 def tell(message: str) -> None:
     """Say something on the first rank, without MPI."""
-    if _on_first_rank():
+    if rank() == 0:
         print(message, file=sys.stderr, flush=True)
-
-
-def _on_first_rank() -> bool:
-    return os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK", "0")) == "0"
 
 
 class _Announcer(event.Listener):
@@ -185,7 +233,7 @@ class _Announcer(event.Listener):
         self._within, self._since = 0, 0.0  # kernels are compiled within the compilation of those that call them
 
     def on_start(self, event: Any) -> None:
-        if self._within == 0 and _on_first_rank() and _first(FOLDER / "announced" / _all_sources()):
+        if self._within == 0 and rank() == 0 and _first(FOLDER / "announced" / _all_sources()):
             tell(ANNOUNCEMENT)
         if self._within == 0:
             self._since = time.process_time()

@@ -67,21 +67,12 @@ def csr_pattern(keys: IntArray, first: int, count: int, n: int) -> tuple[IntArra
     return indptr.astype(np.int32), (keys % n if n else keys).astype(np.int32)
 
 
-@njit
 def union(a: IntArray, b: IntArray) -> IntArray:
     """Numbers in one of two arrays or both, each array sorted and without doubles, as is what comes of them."""
-    out = np.empty(a.size + b.size, np.int64)
-    i = j = count = 0
-    while i < a.size or j < b.size:
-        first, second = i < a.size, j < b.size
-        if first and second:
-            first, second = a[i] <= b[j], b[j] <= a[i]
-        out[count] = a[i] if first else b[j]
-        i, j, count = i + first, j + second, count + 1
-    return out[:count].copy()
+    both = np.sort(np.concatenate([a, b]), kind="stable")  # which merges what is sorted
+    return both[np.append(True, both[1:] != both[:-1])]
 
 
-@njit
 def number_entries(
     rows: IntArray, cols: IntArray, minus: tuple[BoolArray, BoolArray], n: int, numbers: IntArray
 ) -> IntArray:
@@ -90,87 +81,59 @@ def number_entries(
 
     rows (m, nr), cols (m, nc): of the system, -1 for none; minus: which of them are minus what the system has.
     """
-    begin, places = _blocks_by_row(rows, n)
-    begun, found, column = np.zeros(n + 1, np.int64), np.full(n, -1), np.empty(n, np.int64)
-    for r in range(n):
-        begun[r + 1] = begun[r] + _columns_of_row(r, begin, places, cols, found, column, rows.shape[1])
-    numbers[...] = begun[n]
-    keys = np.empty(begun[n], np.int64)
-    found[:] = -1
-    for r in range(n):
-        count = _columns_of_row(r, begin, places, cols, found, column, rows.shape[1])
-        own = column[:count].copy()
-        _sort(own)
-        for k in range(count):
-            keys[begun[r] + k], column[own[k]] = r * n + own[k], begun[r] + k
-        for k in range(begin[r], begin[r + 1]):
-            b, i = places[k] // rows.shape[1], places[k] % rows.shape[1]
-            for j in range(cols.shape[1]):
-                if cols[b, j] >= 0:
-                    at = column[cols[b, j]]
-                    numbers[b, i, j] = -1 - at if minus[0][b, i] != minus[1][b, j] else at
-    return keys
+    places = np.argsort(rows, axis=None, kind="stable")
+    begin = np.searchsorted(rows.ravel()[places], np.arange(n + 1))
+    keys, unknown = np.empty(numbers.size, dtype=np.int64), np.full((2, n), -1)
+    numbers[...] = -1
+    count = _write_entries(begin, places, cols, numbers, keys, *unknown)
+    numbers[numbers < 0] = count
+    opposite = (minus[0][:, :, None] != minus[1][:, None, :]) & (numbers < count)
+    np.subtract(-1, numbers, out=numbers, where=opposite)
+    return keys[:count].copy()
 
 
 @njit
-def _sort(few: IntArray) -> None:
-    """Sort by insertion, in place: numba takes seconds to compile its own sorting."""
-    for i in range(1, few.size):
-        k, value = i, few[i]
-        while k > 0 and few[k - 1] > value:
-            few[k] = few[k - 1]
-            k -= 1
-        few[k] = value
-
-
-@njit
-def _blocks_by_row(rows: IntArray, n: int) -> tuple[IntArray, IntArray]:
-    """Where blocks have rows (m, nr) of n: places b nr + i, those of row r from begin[r] to begin[r + 1]."""
-    m, nr = rows.shape
-    begin = np.zeros(n + 1, np.int64)
-    for b in range(m):
-        for i in range(nr):
-            if rows[b, i] >= 0:
-                begin[rows[b, i] + 1] += 1
-    begin = np.cumsum(begin)
-    places, at = np.empty(begin[n], np.int64), begin[:-1].copy()
-    for b in range(m):
-        for i in range(nr):
-            r = rows[b, i]
-            if r >= 0:
-                places[at[r]] = b * nr + i
-                at[r] += 1
-    return begin, places
-
-
-@njit
-def _columns_of_row(
-    r: int, begin: IntArray, places: IntArray, cols: IntArray, found: IntArray, out: IntArray, nr: int
+def _write_entries(
+    begin: IntArray, places: IntArray, cols: IntArray, numbers: IntArray, keys: IntArray, last: IntArray, at: IntArray
 ) -> int:
-    """Write the distinct columns of a row; how many there are. found (n,): the last row in which each was found."""
-    count = 0
-    for k in range(begin[r], begin[r + 1]):
-        for c in cols[places[k] // nr]:
-            if c >= 0 and found[c] != r:
-                found[c], out[count] = r, c
-                count += 1
+    """Write sorted distinct entries, and the blocks' numbers among these; how many there are.
+
+    places: b nr + i of row i of block b, those in row r of the system from begin[r] to begin[r + 1]. last (n,): the
+    last row that has each column, at (n,): the number of its entry there.
+    """
+    n, nr, count = last.size, numbers.shape[1], 0
+    for r in range(n):
+        first = count
+        for k in range(begin[r], begin[r + 1]):
+            for j in range(cols.shape[1]):
+                c = cols[places[k] // nr, j]
+                if c >= 0 and last[c] != r:
+                    last[c], keys[count] = r, c
+                    count += 1
+        for i in range(first + 1, count):  # sorting by insertion
+            k, c = i, keys[i]
+            while k > first and keys[k - 1] > c:
+                keys[k] = keys[k - 1]
+                k -= 1
+            keys[k] = c
+        for k in range(first, count):
+            at[keys[k]] = k
+            keys[k] += r * n
+        for k in range(begin[r], begin[r + 1]):
+            for j in range(cols.shape[1]):
+                c = cols[places[k] // nr, j]
+                if c >= 0:
+                    numbers[places[k] // nr, places[k] % nr, j] = at[c]
     return count
 
 
-@njit
 def write_places(keys: IntArray, own: IntArray, numbers: IntArray, out: IntArray) -> None:
     """Write the places (n,) that entries have among all keys, which hold all their own: numbers among these, -1 less it
     where an entry is minus what is there. Both sorted. Where there are as many as these, the entry is absent; it gets
     the place behind the last.
     """
-    at, i = np.empty(own.size + 1, out.dtype), 0
-    for k in range(own.size):
-        while keys[i] != own[k]:
-            i += 1
-        at[k] = i
-    at[own.size] = keys.size
-    for k in range(numbers.size):
-        out[k] = at[numbers[k]] if numbers[k] >= 0 else -1 - at[-1 - numbers[k]]
+    at = np.append(np.searchsorted(keys, own), keys.size)
+    out[:] = np.where(numbers >= 0, at[numbers], -1 - at[-1 - numbers])
 
 
 @njit

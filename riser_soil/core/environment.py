@@ -24,6 +24,20 @@ def versions() -> dict[str, str]:
     return {"python": platform.python_version()} | {name: module.__version__ for name, module in there.items()}
 
 
+def rank() -> int:
+    """This process's number under mpirun, without importing MPI; 0 alone."""
+    return _from_environment("OMPI_COMM_WORLD_RANK", "PMI_RANK") or 0
+
+
+def size() -> int:
+    """Number of processes under mpirun, without importing MPI; 1 alone."""
+    return _from_environment("OMPI_COMM_WORLD_SIZE", "PMI_SIZE") or 1
+
+
+def _from_environment(*names: str) -> int | None:
+    return next((int(os.environ[name]) for name in names if os.environ.get(name, "").isdecimal()), None)
+
+
 @cache
 def processor() -> str:
     """Name of the processor, and what it can do where the system says so: the same where machine code is the same."""

@@ -51,6 +51,17 @@ class Turn:
             while not self._lock() and time.monotonic() < ends:
                 time.sleep(0.01)
 
+    @property
+    def free(self) -> bool:
+        """Whether no process has it."""
+        try:
+            free = self._lock()
+        except OSError:
+            return True
+        if free:
+            self.leave()
+        return free
+
     def leave(self) -> None:
         with suppress(OSError):
             fcntl.lockf(_turns(self._folder), fcntl.LOCK_UN, 1, self._byte)
@@ -66,19 +77,33 @@ class Turn:
 @contextmanager
 def first_alone(folder: Path, name: str) -> Iterator[None]:
     """What has a name is done by one process until it has been done once in a folder; then by all at once."""
-    done = folder / "done" / name
-    if done.exists():
+    if is_done(folder, name):
         yield
         return
     turn = Turn(str(folder), name)
     turn.take()
     try:
         yield
+        done = _mark(folder, name)
         with suppress(OSError):
             done.parent.mkdir(exist_ok=True)
             done.touch()
     finally:
         turn.leave()
+
+
+def is_done(folder: Path, name: str) -> bool:
+    """Whether what has a name has been done in a folder."""
+    return _mark(folder, name).exists()
+
+
+def is_free(folder: Path, name: str) -> bool:
+    """Whether it has not been done, nor does a process do it now."""
+    return not is_done(folder, name) and Turn(str(folder), name).free
+
+
+def _mark(folder: Path, name: str) -> Path:
+    return folder / "done" / name
 
 
 @cache

@@ -49,7 +49,7 @@ class TimeResolution:
 
     def update(self, t: Array | float, values: Array) -> None:
         """t: s; values (n,) after a step, or times (nt,) and values (nt, n) after steps in turn. nan does not count."""
-        self._follow(self._course, np.atleast_1d(t), np.atleast_2d(values))
+        self._follow(self._course, np.atleast_1d(t), np.ascontiguousarray(np.atleast_2d(values)))
 
     @property
     def _less(self) -> Array:

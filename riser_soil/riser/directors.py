@@ -48,11 +48,6 @@ class PlanarOrientation:
         return self.angle[:, None]
 
     @property
-    def first_wound(self) -> int:
-        """First element whose ends differ by more than half a turn; ne without any."""
-        return int(first_wound(self.end_angle))
-
-    @property
     def end_frames(self) -> tuple[Array, Array]:
         """No section frames, as there is one stiffness."""
         return NO_FRAMES, NO_FRAMES

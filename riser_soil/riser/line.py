@@ -12,14 +12,16 @@ from functools import cached_property
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, as_list
+from riser_soil.core.bound import Packed, bound
 from riser_soil.core.part import State
 from riser_soil.core.saved_state import Saved
 from riser_soil.errors import SceneError
 from riser_soil.riser import line_kernels
+from riser_soil.riser.configuration import write_folded
 from riser_soil.riser.directors import initial_frames
 from riser_soil.riser.line_ends import End, LineEnds, free_turns, unit_lengths
-from riser_soil.riser.line_kernels import write_folded
 from riser_soil.riser.moving_nodes import MovingNodes, out_of_plane
+from riser_soil.riser.placed_line import LineTrials
 from riser_soil.riser.shapes import Layout
 from riser_soil.riser.spatial_directors import SpatialFrames
 
@@ -170,11 +172,11 @@ class Line(MovingNodes):
         not physical for a pipe, and an end spring would count the turns. A slack wire that is let go snaps into waves
         of its elements: steps that jump over these turn the tension's energy into a motion that there is not.
         """
-        trial, found = self.trial(state), np.zeros(2, dtype=np.int64)
-        left = trial if before is None else self.trial(before)
-        first, last = (left.chord, left.turn.tangent), (trial.chord, trial.turn.tangent)
-        write_folded(*first, *last, trial.turn.first_wound, self.loose, found)
-        return self.folding(*as_list(found))
+        trials, found = self.once(LineTrials), np.zeros(2, dtype=np.int64)
+        trials.now.move(state)
+        bound(write_folded, trials.now.at, trials.base.packed, Packed(found))()
+        folded, swung = as_list(found)
+        return self.folding(folded, self.length.size if before is None else swung)
 
     def folding(self, folded: int, swung: int) -> str:
         """What to say of the first element that is folded or wound up, and of the first that swings too far in a step;

@@ -15,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
-from riser_soil.core.compiled import njit
 from riser_soil.core.saved_state import Saved
 from riser_soil.riser.directors import Frames, Orientation
 from riser_soil.riser.spatial_directors import SpatialOrientation
@@ -126,7 +125,8 @@ class LineEnds:
         reach: by end, the share (nn,) that each node takes.
         """
         for node, motion, held in self._moving():
-            _spread_motion(moved, node, self._motion(node, motion, t, x)[0], held, reach[node])
+            rest = self._motion(node, motion, t, x)[0, :held] - moved[node, :held]
+            moved[:, :held] += np.outer(reach[node], rest)
 
     def prescribe(self, t: float, x: Array, u: Array, v: Array, a: Array) -> None:
         """Write increments, rates and accelerations of prescribed dofs into the field's slices; nodes at x (nn, d)."""
@@ -177,28 +177,13 @@ class LineEnds:
         self._supports, self._bases = (dict(zip(nodes, saved[name], strict=True)) for name in ("supports", "bases"))
 
 
-@njit
-def _spread_motion(moved: Array, node: int, to: Array, held: int, reach: Array) -> None:
-    """Add the rest of a node's motion to what is held of it to the increments (nn, ndof), each node by its share."""
-    for i in range(held):
-        rest = to[i] - moved[node, i]
-        for n in range(moved.shape[0]):
-            moved[n, i] += reach[n] * rest
-
-
-@njit
 def _motion_in_axes(motion: Array, origin: Array, basis: Array, start: Array) -> Array:
     """Displacement, velocity and acceleration (3, d) in the axes of a line: of a motion (3, 3), its place first, from
     where the node is, `start` (d,).
     """
-    out = np.zeros((3, basis.shape[1]))
-    for k in range(3):
-        for i in range(basis.shape[1]):
-            for j in range(3):
-                out[k, i] += (motion[k, j] - (origin[j] if k == 0 else 0.0)) * basis[j, i]
-    for i in range(basis.shape[1]):
-        out[0, i] -= start[i]
-    return out
+    moved = motion @ basis
+    moved[0] -= origin @ basis + start
+    return np.asarray(moved)
 
 
 STILL = 1e-9  # of the line's length, or a radian: what moves less does not move

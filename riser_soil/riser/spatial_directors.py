@@ -53,11 +53,6 @@ class SpatialOrientation:
         return self.Theta
 
     @property
-    def first_wound(self) -> int:
-        """First element whose ends turn by increments that differ by more than half a turn; ne without any."""
-        return int(first_wound(self.Theta))
-
-    @property
     def end_frames(self) -> tuple[Array, Array]:
         """Section frames (ne, 3, 3) at the elements' first and second ends."""
         return self.frame1, self.frame2

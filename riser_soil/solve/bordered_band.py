@@ -22,7 +22,6 @@ from riser_soil.core.part import LineField
 from riser_soil.core.system import System
 from riser_soil.solve.newton_settings import MOST_JOINTS
 
-OF_LINES = 5, 11  # entries beside the diagonal, in a plane and in space, for which loops over a row are compiled
 MOST_ROWS = 6 * MOST_JOINTS  # of the border, that joints have
 
 
@@ -149,7 +148,7 @@ def fewest_rows(row: IntArray, column: IntArray) -> IntArray:
 def _width(wide: int) -> Any:
     """A band's width as `banded` takes it: fixed for lines, else an array of that length, for matrices of all widths.
     """
-    return fixed(wide) if wide in OF_LINES else np.zeros(wide)
+    return fixed(wide) if wide in banded.OF_LINES else np.zeros(wide)
 
 
 def _places(matrix: Matrix, band: IntArray, border: IntArray) -> IntArray:
