@@ -19,6 +19,7 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 os.environ["RISER_SOIL_COMPLIANCE"] = "off"
+os.environ["RISER_SOIL_COMPILERS"] = "1"  # tests are several processes already
 
 import pytest
 from hypothesis import settings

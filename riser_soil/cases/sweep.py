@@ -34,7 +34,8 @@ def run_cases(
     folder = folder.absolute()
     _refuse_foreign(folder / CASES, cases)
     with claimed(folder, CASES, "load cases") as runs:
-        tasks = [task(case.name, case.variant, runs, limit=limit) for case in cases]
+        alone = workers.jobs == 1 and workers.scheduler is None
+        tasks = [task(case.name, case.variant, runs, limit=limit, alone=alone) for case in cases]
         outcomes, todo = pool.divided(tasks)
         echo(f"{len(cases)} cases, {len(outcomes)} of them done already" if outcomes else f"{len(cases)} cases")
         outcomes |= _computed(cases, todo, workers, folder)

@@ -7,7 +7,7 @@ import typer
 
 from riser_soil.commands.exit_status import expected_errors
 from riser_soil.commands.scenes import Overrides, SceneFile, at_least_one, placed, positive, read_solved, read_start
-from riser_soil.core.environment import rank
+from riser_soil.core.environment import cores, rank
 from riser_soil.errors import ResultsError, SolveError
 
 _NAMED = 5
@@ -44,7 +44,7 @@ def cases(
 
         from riser_soil.cases.characteristic import governing_table, warnings_of
         from riser_soil.cases.sweep import run_cases
-        from riser_soil.variants.pool import Workers, cores
+        from riser_soil.variants.pool import Workers
 
         folder = output or Path(file.stem)
         workers = Workers(jobs or cores(), scheduler)
@@ -75,7 +75,6 @@ def compile_(
         from rich.progress import Progress
 
         from riser_soil.drafts.every_kind import drafted
-        from riser_soil.variants.pool import cores
         from riser_soil.variants.short_runs import compile_kernels
 
         asked = {file: read_start(file, None) for file in scenes or ()} or drafted()

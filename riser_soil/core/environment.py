@@ -38,6 +38,11 @@ def _from_environment(*names: str) -> int | None:
     return next((int(os.environ[name]) for name in names if os.environ.get(name, "").isdecimal()), None)
 
 
+def cores() -> int:
+    """Number of cores that this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
 @cache
 def processor() -> str:
     """Name of the processor, and what it can do where the system says so: the same where machine code is the same."""

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Protocol
 
-from riser_soil.core.environment import rank, size
+from riser_soil.core.environment import cores, rank, size
 
 AT_MOST = "RISER_SOIL_COMPILERS"
 
@@ -32,16 +32,17 @@ def side_by_side(jobs: Sequence[Job]) -> None:
     """Do the jobs that are free, in this process and its forks; ranks share the cores. Some may still be done by other
     ranks at the end.
     """
-    here = max(min(cores() // size(), len(jobs)), 1)
+    here = max(min(at_most() // size(), len(jobs)), 1)
     turned = [_turned(jobs, (here * rank() + n) / (here * size())) for n in range(here)]
     with _forks(turned[1:]):
         _do(turned[0])
 
 
-def cores() -> int:
-    """How many processes compile at most: as many as this one may use cores, where the environment does not say it."""
+def at_most() -> int:
+    """How many processes there are at most: as many as this one may use cores, where the environment does not say it.
+    """
     given = os.environ.get(AT_MOST, "")
-    return int(given) if given.isdecimal() and int(given) > 0 else len(os.sched_getaffinity(0))
+    return int(given) if given.isdecimal() and int(given) > 0 else cores()
 
 
 def _turned(jobs: Sequence[Job], share: float) -> list[Job]:

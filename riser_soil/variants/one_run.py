@@ -18,6 +18,7 @@ from typing import Any
 
 from riser_soil import __version__
 from riser_soil.core.environment import environment_alone
+from riser_soil.core.side_by_side import AT_MOST
 from riser_soil.errors import ResultsError, WriteError
 from riser_soil.results.folder import SCENE, names_in
 from riser_soil.results.ownership import sealed
@@ -74,7 +75,7 @@ def _refused(task: Task, reason: str, status: int = ResultsError.exit_status) ->
 def _computed(task: Task, wanted: Callable[[], bool]) -> Outcome:
     runs, since = Path(task["runs"]), time.monotonic()
     made = attempt(runs, task["name"], task["scene"])
-    process = _started(made)
+    process = _started(made, task["alone"])
     stopped = _watched(process, since + task["limit"] if task["limit"] else float("inf"), wanted)
     status, reason = stopped or _exit_status(process.returncode), ""
     if stopped == STOPPED_BY_LIMIT:
@@ -105,12 +106,13 @@ def command(made: Path) -> list[str]:
     return [sys.executable, "-m", module, str(os.getpid()), str(made / SCENE), str(made)]
 
 
-def _started(made: Path) -> subprocess.Popen[bytes]:
+def _started(made: Path, alone: bool) -> subprocess.Popen[bytes]:
     """Start the process in a session of its own: Ctrl-C in the terminal ends the command, and that the run."""
+    given = environment_alone() | {"OMP_NUM_THREADS": "1"} | ({} if alone else {AT_MOST: "1"})
     with (made / PRINTED).open("wb") as printed:
         return subprocess.Popen(
-            command(made), env=environment_alone() | {"OMP_NUM_THREADS": "1"}, stdin=subprocess.DEVNULL, stdout=printed,
-            stderr=subprocess.STDOUT, start_new_session=True,
+            command(made), env=given, stdin=subprocess.DEVNULL, stdout=printed, stderr=subprocess.STDOUT,
+            start_new_session=True,
         )  # fmt: skip
 
 

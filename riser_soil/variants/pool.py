@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import threading
 from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -77,8 +76,3 @@ def outcomes(tasks: Sequence[Task], workers: Workers, begin: Callable[[], None])
         finally:
             stopped.set()
             pool.shutdown(cancel_futures=True)
-
-
-def cores() -> int:
-    """Number of cores that this process may use."""
-    return len(os.sched_getaffinity(0))

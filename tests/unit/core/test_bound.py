@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numba
@@ -9,6 +11,7 @@ import numpy as np
 import pytest
 
 from riser_soil.core.bound import Bound, Packed, call_each, calls
+from tests.support.on_ranks import environment, finished
 
 
 class Inner(NamedTuple):
@@ -60,6 +63,71 @@ def test_kernels_are_called_in_turn() -> None:
     both = Packed(calls(*(Bound(add, Packed(given(np.full((2, 4), k))), Packed(out)) for k in (1.0, 2.0))))
     Bound(call_each, both)()
     np.testing.assert_allclose(out, 3 * 2.0 * (3 + 7 + 11))
+
+
+def test_kernels_that_are_bound_after_a_call_are_there_at_the_next() -> None:
+    """Also among those that are called in turn by what has been called before."""
+    out = np.zeros(2)
+    first = Bound(add, Packed(given(np.ones((2, 4)))), Packed(out))
+    turns = Packed(calls(first))
+    each = Bound(call_each, turns)
+    each()
+
+    @numba.njit
+    def negate(out: np.ndarray) -> None:
+        out[:] *= -1.0
+
+    turns.renew(calls(first, Bound(negate, Packed(out))))
+    each()
+    np.testing.assert_allclose(out, -2 * 2.0 * (3 + 7 + 11))
+
+
+MANY = """
+import os
+import numpy as np
+from numba.core import event
+from riser_soil.core.bound import Bound, Packed
+from riser_soil.core.compiled import njit
+
+@njit
+def add(out, value):
+    out[0] += value
+
+@njit
+def set_zero(out):
+    out[0] = 0.0
+
+@njit
+def times(out, value):
+    out[0] *= value
+
+@njit
+def less(out, value):
+    out[0] -= value
+
+out = np.ones(1)
+with event.install_recorder("numba:compile") as compiled:
+    kernels = [Bound(set_zero, Packed(out)), *(Bound(each, Packed(out), Packed(3.0)) for each in (add, times, less))]
+    assert len(compiled.buffer) == 0
+    for kernel in kernels:
+        kernel()
+print(out[0], len(compiled.buffer) // 2)
+"""
+
+
+def test_what_is_bound_is_compiled_side_by_side_and_kept(tmp_path: Path) -> None:
+    """At the first call: a fork takes a share of it; what it has compiled is read, and all is in another process."""
+    (tmp_path / "many.py").write_text(MANY, encoding="utf-8")
+
+    def compiled(cache: str, processes: int) -> int:
+        more = {"NUMBA_CACHE_DIR": str(tmp_path / cache), "RISER_SOIL_COMPILERS": f"{processes}"}
+        done = finished([sys.executable, str(tmp_path / "many.py")], tmp_path, environment() | more)
+        value, pieces = done.stdout.split()
+        assert float(value) == 6.0
+        return int(pieces)
+
+    assert 0 < compiled("shared", 2) < compiled("alone", 1)
+    assert compiled("shared", 1) == 0
 
 
 UNFIT = "an array that is not contiguous or may not be written"

@@ -27,7 +27,9 @@ from tests.support.on_ranks import ROOT
 
 PUBLIC = {"numba", "numba.types", "numba.typed", "numba.experimental", "numba.extending", "numba.core.event"}  # modules
 DOCUMENTED = {"address", "ctypes", "py_func", "signature"}  # the last of the wrapper address protocol
-OTHERS = {"load", "args", "name", "register", "globals", "flush", "_replace", "enable", "disable"}  # words that objects of others have, too
+OTHERS = {  # words that objects of others have, too
+    "load", "args", "name", "register", "globals", "flush", "_replace", "enable", "disable",
+}  # fmt: skip
 OPTIONS = {"nopython", "boundscheck", "error_model", "fastmath", "forceinline", "inline", "no_cfunc_wrapper"}
 INSIDE: tuple[Any, ...] = (
     CPUDispatcher, dispatcher._DispatcherBase, caching.FunctionCache, caching.CompileResultCacheImpl,
