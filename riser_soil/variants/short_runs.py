@@ -23,16 +23,10 @@ def compile_kernels(scenes: Mapping[str, Scene], jobs: int) -> Iterator[Outcome]
     names = {f"{n}": name for n, name in enumerate(scenes)}
     with tempfile.TemporaryDirectory(prefix="riser_soil-") as folder:
         runs = Path(folder) / "runs"
-<<<<<<< HEAD
-        tasks = [task(n, variant_of(shortened(scenes[name])), runs) for n, name in names.items()]
-        with closing(outcomes(tasks, Workers(jobs), lambda: prepare_attempts(runs))) as results:
-            for outcome in results:
-=======
         alone = min(jobs, len(names)) == 1
         tasks = [task(n, variant_of(shortened(scenes[name])), runs, alone=alone) for n, name in names.items()]
-        with closing(outcomes(tasks, Workers(jobs), lambda: prepare_attempts(runs))) as found:
-            for outcome in found:
->>>>>>> 90f6b5dc (Tests of side by side compilation)
+        with closing(outcomes(tasks, Workers(jobs), lambda: prepare_attempts(runs))) as results:
+            for outcome in results:
                 yield replace(outcome, name=names[outcome.name])
 
 
