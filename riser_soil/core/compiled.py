@@ -47,7 +47,6 @@ from riser_soil.core.kinds import Kind, kind_of, mark
 NAME = PACKAGE.name
 ROOM = 1 << 26  # bytes that all kernels need, and some more
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "arcp"}}
-WITHIN = OPTIONS | {"no_cfunc_wrapper": True}  # of what compiled code alone calls: a tenth of its compilation less
 ANNOUNCEMENT = "compiling kernels (once, about a minute)"
 
 
@@ -63,7 +62,7 @@ class Kernel:
         self._made: dict[tuple[Any, ...], Any] = {}  # by numba's types of the arguments
         self._latest: dict[tuple[type, ...], Any] = {}
         update_wrapper(self, function)
-        overload(self, jit_options=WITHIN | {"forceinline": not apart}, strict=False)(lambda *_: function)
+        overload(self, jit_options=OPTIONS | {"forceinline": not apart}, strict=False)(lambda *_: function)
 
     def __call__(self, *arguments: Any) -> Any:
         """What was compiled for such types is called, and looked for anew where numba says with a TypeError that arrays

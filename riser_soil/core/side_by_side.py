@@ -25,7 +25,8 @@ class Job(Protocol):
     def free(self) -> bool:
         """Whether it has not been done and no process does it now."""
 
-    def do(self) -> None: ...
+    def do(self) -> None:
+        """Do it, or wait for the process that was quicker."""
 
 
 def side_by_side(jobs: Sequence[Job]) -> None:

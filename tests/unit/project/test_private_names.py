@@ -30,7 +30,7 @@ DOCUMENTED = {"address", "ctypes", "py_func", "signature"}  # the last of the wr
 OTHERS = {  # words that objects of others have, too
     "load", "args", "name", "register", "globals", "flush", "_replace", "enable", "disable",
 }  # fmt: skip
-OPTIONS = {"nopython", "boundscheck", "error_model", "fastmath", "forceinline", "inline", "no_cfunc_wrapper"}
+OPTIONS = {"nopython", "boundscheck", "error_model", "fastmath", "forceinline", "inline"}
 INSIDE: tuple[Any, ...] = (
     CPUDispatcher, dispatcher._DispatcherBase, caching.FunctionCache, caching.CompileResultCacheImpl,
     caching.IndexDataCacheFile, caching.InTreeCacheLocator, ccallback.CFunc, codegen.JITCodeLibrary,
