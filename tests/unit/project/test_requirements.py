@@ -16,14 +16,14 @@ import riser_soil
 from tests.support.on_ranks import ROOT
 
 DEBIAN = {"numpy", "scipy", "h5py", "cffi"}  # as its PETSc and dolfinx were compiled with them
-APART = {"dev", "all", "small"}  # extras that set-up doesn't bring as such; small asks for an older numba than others
+APART = {"dev", "all"}  # extras that set-up doesn't bring as such
 pythons = pytest.mark.parametrize("python", ["3.11", "3.13", "3.14"])
 
 
 def as_list(name: str) -> set[str]:
     """Names in requirements/NAME.txt."""
     lines = (ROOT / f"requirements/{name}.txt").read_text(encoding="utf-8").splitlines()
-    return {canonicalize_name(line) for line in lines if not line.startswith("#")}
+    return {canonicalize_name(Requirement(line).name) for line in lines if not line.startswith("#")}
 
 
 def pins(name: str, python: str) -> dict[str, tuple[str, int]]:
@@ -33,12 +33,16 @@ def pins(name: str, python: str) -> dict[str, tuple[str, int]]:
     for line in (line for line in text.splitlines() if not line.startswith("#")):
         pin, *hashes = line.split(" --hash=sha256:")
         asked = Requirement(pin)
-        if holds(asked, {"python_version": python, "python_full_version": f"{python}.0"}):
+        if holds(asked, for_python(python)):
             assert asked.name not in versions, f"{asked.name} is pinned twice for Python {python}"
             assert str(asked.specifier).startswith("==")
             count = len([h for h in hashes if re.fullmatch("[0-9a-f]{64} *", h)])
             versions[asked.name] = str(asked.specifier)[2:], count
     return versions
+
+
+def for_python(python: str) -> dict[str, str]:
+    return {"python_version": python, "python_full_version": f"{python}.0"}
 
 
 def holds(asked: Requirement, environment: dict[str, str]) -> bool:
@@ -68,7 +72,8 @@ def test_pins_are_what_the_project_asks_for(python: str) -> None:
     for_users = [text for extra, texts in extras.items() if extra not in APART for text in texts]
     asked = {"run": [*project["dependencies"], *for_users], "dev": extras["dev"]}
     for name, texts in asked.items():
-        versions, needed = pins(name, python), [Requirement(text) for text in texts]
+        versions, here = pins(name, python), for_python(python)
+        needed = [each for each in map(Requirement, texts) if holds(each, here)]
         assert {canonicalize_name(r.name) for r in needed} - DEBIAN == as_list(name)
         for each in needed:
             assert each.name in DEBIAN or each.specifier.contains(versions[canonicalize_name(each.name)][0]), str(each)
@@ -99,7 +104,10 @@ def test_the_recipe_for_conda_asks_for_what_the_project_does() -> None:
     extras = project["optional-dependencies"]
     for text in [*project["dependencies"], *extras["tables"], *extras["plots"], "jinja2>=3.1"]:
         wanted = Requirement(text)
-        assert given[canonicalize_name(wanted.name)] == wanted.specifier, wanted.name
+        if wanted.marker is None:
+            assert given[canonicalize_name(wanted.name)] == wanted.specifier, wanted.name
+    by_python = [each.specifier for each in map(Requirement, project["dependencies"]) if each.marker is not None]
+    assert set(given["numba"]) <= {bound for each in by_python for bound in each}
     assert recipe["context"]["version"] == riser_soil.__version__
     (command,) = recipe["build"]["python"]["entry_points"]
     assert command == f"riser-soil = {project['scripts']['riser-soil']}"
