@@ -13,6 +13,7 @@ import struct
 from collections.abc import Iterable, Iterator
 from functools import cache, cached_property
 from itertools import count
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 import numba
@@ -46,7 +47,7 @@ class Entry:
         lines = f"rows = carray(row, {len(unpack)})", f"kernel({arguments})"
         heading = f"{kernel.py_func.__name__}_{mark(kind)}(row, same)"
         self._function = _function(heading, lines, kernel.py_func, {"kernel": kernel, **unpack})
-        self.place = place_of(self._function, kind, __name__)
+        self.module, self.place = kernel.py_func.__module__, place_of(self._function, kind, __name__)
         self._wanted_in: list[tuple[IntArray, int]] = []
 
     @property
@@ -87,10 +88,12 @@ def entry_of(kernel: Any, kind: TupleKind) -> Entry:
 
 
 def compile_wanted() -> None:
-    """Compile all entries that are wanted, side by side, or read them from disk."""
+    """Compile all entries that are wanted, side by side, or read them from disk. Kernels of a module, which call the
+    same functions, are as a rule compiled by the same process.
+    """
     entries = [*dict.fromkeys(WANTED)]
     WANTED.clear()
-    missing = [each for each in entries if not each.place.filled]
+    missing = [each for each in sorted(entries, key=attrgetter("module")) if not each.place.filled]
     if len(missing) > 1:
         with compiling():
             side_by_side(missing)

@@ -101,6 +101,31 @@ def test_kernels_of_what_a_scene_lacks_are_not_called(modules: str, scenes: set[
     assert {name for name, kernels in called.items() if any(map(pattern.match, kernels))} == scenes
 
 
+#: Kernels that Python calls or binds, by scene, at most; each brings those that it calls.
+MOST = {
+    "demos/first_scene.yaml": 69,
+    "tests/scenes/steel_catenary.yaml": 69,
+    "tests/scenes/storm.yaml": 97,
+    "demos/touchdown_clay/scene.yaml": 107,
+}
+LACKED = {  # modules of parts that are not there
+    "demos/first_scene.yaml": r"riser\.(beam3d|strain3d)|sea\.(wave|current|buoyancy)|contact\.(friction|coulomb)|soil",
+    "tests/scenes/steel_catenary.yaml": r"riser\.(beam3d|strain3d)|sea\.(wave|current|buoyancy)|contact\.coulomb|soil",
+    "tests/scenes/storm.yaml": r"riser\.(beam2d|springs)|sea\.(morison|vortices)|contact\.(surface|node)|soil",
+    "demos/touchdown_clay/scene.yaml": r"riser\.(beam2d|springs)|sea\.(wave|current|buoyancy)|bodies",
+}
+LONG = {"demos/touchdown_clay/scene.yaml": pytest.mark.verify}
+
+
+@pytest.mark.parametrize("path", [pytest.param(path, marks=LONG.get(path, ())) for path in MOST])
+def test_no_more_kernels_than_a_scene_needs(path: str, tmp_path: Path) -> None:
+    done = finished([sys.executable, str(ROOT / "tests/support/few_steps.py"), path, str(tmp_path)], ROOT, environment())
+    assert done.returncode == 0, done.stderr
+    kernels = json.loads((tmp_path / "found.json").read_text(encoding="utf-8"))["kernels"]
+    assert 50 < len(kernels) <= MOST[path]
+    assert not [each for each in kernels if re.match(rf"riser_soil\.({LACKED[path]})", each)]
+
+
 @pytest.mark.parametrize("given", [{}, OFF])
 def test_the_examples_of_the_page_on_kernels_run(given: dict[str, str], tmp_path: Path) -> None:
     (tmp_path / "page.py").write_text("\n".join(blocks(ROOT / "docs/kernels.md", "python")), encoding="utf-8")
