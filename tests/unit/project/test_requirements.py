@@ -107,7 +107,7 @@ def test_the_recipe_for_conda_asks_for_what_the_project_does() -> None:
         if wanted.marker is None:
             assert given[canonicalize_name(wanted.name)] == wanted.specifier, wanted.name
     by_python = [each.specifier for each in map(Requirement, project["dependencies"]) if each.marker is not None]
-    assert set(given["numba"]) <= {bound for each in by_python for bound in each}
+    assert set(given[canonicalize_name("numba")]) <= {bound for each in by_python for bound in each}
     assert recipe["context"]["version"] == riser_soil.__version__
     (command,) = recipe["build"]["python"]["entry_points"]
     assert command == f"riser-soil = {project['scripts']['riser-soil']}"
