@@ -31,9 +31,10 @@ OTHERS = {  # words that objects of others have, too
     "load", "args", "name", "register", "globals", "flush", "_replace", "enable", "disable",
 }  # fmt: skip
 OPTIONS = {"nopython", "boundscheck", "error_model", "fastmath", "forceinline", "inline"}
+IN_TREE = getattr(caching, "InTreeCacheLocator", None) or caching._InTreeCacheLocator  # by the release
 INSIDE: tuple[Any, ...] = (
     CPUDispatcher, dispatcher._DispatcherBase, caching.FunctionCache, caching.CompileResultCacheImpl,
-    caching.IndexDataCacheFile, caching.InTreeCacheLocator, ccallback.CFunc, codegen.JITCodeLibrary,
+    caching.IndexDataCacheFile, IN_TREE, ccallback.CFunc, codegen.JITCodeLibrary,
     codegen.JITCPUCodegen, compiler.CompileResult, funcdesc.PythonFunctionDescriptor, cpu.CPUContext, DataModel,
     DataModelManager, lowering.Environment, type(rtsys),
 )  # fmt: skip
