@@ -70,7 +70,9 @@ def csr_pattern(keys: IntArray, first: int, count: int, n: int) -> tuple[IntArra
 def union(a: IntArray, b: IntArray) -> IntArray:
     """Numbers in one of two arrays or both, each array sorted and without doubles, as is what comes of them."""
     both = np.sort(np.concatenate([a, b]), kind="stable")  # which merges what is sorted
-    return both[np.append(True, both[1:] != both[:-1])]
+    new = np.ones(both.size, dtype=bool)
+    new[1:] = both[1:] != both[:-1]
+    return np.asarray(both[new])
 
 
 def number_entries(
