@@ -370,6 +370,7 @@ def test_committed_settlement_counts_and_memory_is_dropped() -> None:
     state = case.state()
     force = case.contact.force_per_length(state)
     case.contact.commit(state)
+    case.riser.commit(state)
     case.surface.committed[:, 2] -= 0.005
     np.testing.assert_allclose(case.contact.force_per_length(state), force - 0.005 * LAW.stiffness, rtol=1e-9)
 
