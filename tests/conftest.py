@@ -21,6 +21,7 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 os.environ["RISER_SOIL_COMPLIANCE"] = "off"
 os.environ["RISER_SOIL_COMPILERS"] = "1"  # tests are several processes already
 
+import numba
 import pytest
 from hypothesis import settings
 
@@ -34,6 +35,14 @@ settings.load_profile("unhurried")
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--page", action="store_true", help="write what tests find to its places in the pages")
+
+
+@pytest.fixture
+def uncompiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Kernels run as Python: formulas alone are tested, in less time than it takes to compile them for all laws and
+    grounds. Others see to it that compiled code does the same (`tests/scenes/test_uncompiled.py`).
+    """
+    monkeypatch.setattr(numba.config, "DISABLE_JIT", True)
 
 
 @pytest.fixture

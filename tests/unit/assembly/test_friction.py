@@ -24,6 +24,8 @@ from tests.support.differences import WEIGHTS, difference_tangent, error
 from tests.support.sample_line import DIRECTION, START, sample
 from tests.support.tractions import traction
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 both_dimensions = pytest.mark.parametrize("dimension", [pytest.param(2, marks=pytest.mark.verify), 3])
 MU = np.array([0.3, 0.7])
 EPS, TINY = np.finfo(float).eps, np.finfo(float).tiny  # round-off: of a number of order 1, of products that underflow

@@ -22,6 +22,8 @@ from tests.support.differences import WEIGHTS, difference_tangent, error
 from tests.support.sample_body import RHO, body, properties, shaken
 from tests.support.sample_line import sample
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 EXACT = 1e-8
 
 

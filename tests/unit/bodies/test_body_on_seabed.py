@@ -20,6 +20,8 @@ from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
 from tests.support.sample_body import body, shaken
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 EXACT = 1e-8
 STIFFNESS, WIDE = 3.0e4, 1.4  # N/m2; length of pipe as which all points press, m
 FEET = np.array([[0.9, 0.4, -0.5], [-0.7, 0.5, -0.6], [0.1, -0.8, -0.4]])

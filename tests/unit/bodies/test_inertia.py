@@ -18,6 +18,8 @@ from tests.support.differences import error, slope
 from tests.support.momentum import of_body
 from tests.support.sample_body import body, properties
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 RULE = Midpoint()
 FORCES = Weights(1.0, 0.0, 0.0, 0.0)
 GENERAL = properties().mass_matrix()

@@ -19,6 +19,8 @@ from tests.support.dense_chain import tangent
 from tests.support.differences import WEIGHTS, difference_tangent, error
 from tests.support.sample_line import DIRECTION, START, Sample, sample
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 both_dimensions = pytest.mark.parametrize("dimension", [pytest.param(2, marks=pytest.mark.verify), 3])
 ROUND = Penalty(4.0e4, smoothing=30.0)  # its rounded corner holds the whole sample, so that differences are smooth
 HILL = Profile(START[:2], DIRECTION[:2], np.array([-1.0, 2.0, 4.0, 8.0]), START[2] + np.array([0.5, -0.6, 0.3, 1.0]))

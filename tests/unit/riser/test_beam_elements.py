@@ -22,6 +22,8 @@ from riser_soil.riser.tension_only import Linear, TensionOnly, pulled
 from riser_soil.riser.vectors import isotropic, matrix, vector
 from tests.support import planar_elements, spatial_elements
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 NE = 5
 EA = 2.0e3
 TOLERANCE = 1e-9  # of finite differences

@@ -31,6 +31,8 @@ from tests.support.said import telling
 from tests.support.sample_line import sample
 from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 G, BORE, AREA = 9.81, 0.3, 0.25 * math.pi * 0.3**2
 L = 8.0  # m, of the sample
 

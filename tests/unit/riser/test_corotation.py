@@ -11,6 +11,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.riser import corotation, rotations
 from riser_soil.riser.vectors import Vec, matrix, vector
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 UNHURRIED = settings(deadline=None)  # the first call compiles
 STENCIL = {-3: -1 / 60, -2: 3 / 20, -1: -3 / 4, 1: 3 / 4, 2: -3 / 20, 3: 1 / 60}
 MU = (0.7, -1.3, 0.4)

@@ -8,6 +8,8 @@ import pytest
 from riser_soil.riser import hermite, stations
 from riser_soil.riser.corotation import angle_over_sine
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 L = np.array([0.5, 2.0, 7.0])
 XI = np.linspace(0.0, 1.0, 2001)
 

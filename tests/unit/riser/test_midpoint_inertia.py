@@ -18,6 +18,8 @@ from tests.support.dense_chain import residual, tangent
 from tests.support.differences import error
 from tests.support.sample_line import Sample, sample
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 DT, BEGUN = 0.4, 2.0
 WEIGHTS = Midpoint().weights(DT)
 STENCIL = ((1, 3.0 / 4.0), (2, -3.0 / 20.0), (3, 1.0 / 60.0))

@@ -11,6 +11,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.riser import hermite
 from tests.support import planar_elements
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 NE = 6
 
 

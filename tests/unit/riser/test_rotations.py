@@ -11,6 +11,8 @@ from riser_soil.core.arrays import Array
 from riser_soil.riser import rotations
 from riser_soil.riser.vectors import Mat, Vec, vector
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 NEAR_PI = np.pi - 1e-9
 EPS = np.finfo(float).eps
 component = st.floats(-1.0, 1.0)

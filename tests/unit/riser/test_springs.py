@@ -15,6 +15,8 @@ from riser_soil.riser.springs import PlanarSpring, SpatialSpring
 from tests.support.scenes import Mapping, prescribed, riser_scene, static
 from tests.support.stage_histories import stage_histories
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 ROD: Mapping = {"EA": 1.0e9, "EI": 1.0e10, "GJ": 1.0e10}
 L, K = 10.0, 5.0e3
 

@@ -13,6 +13,8 @@ from riser_soil.riser.strain3d import Strain, energy, stress, stress_change
 from riser_soil.riser.tension_only import Linear
 from tests.support.differences import slope
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 STRIP = Stiffness(12.0, 1.28e6, 9.6e7, 3.8e4, 5.9e4, Linear())  # of 30 x 0.6, N and mm, deep about its second axis
 
 

@@ -20,6 +20,8 @@ from tests.support.pipes import WEIGHTLESS, pipe
 from tests.support.sample_line import DIRECTION, START, THICK, THIN, UP, sample
 from tests.support.sections import section_forces
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
 NORMAL = np.cross(DIRECTION, UP)
 

@@ -10,6 +10,8 @@ from riser_soil.riser.slack import law_of
 from riser_soil.riser.tension_only import Linear, SlackElement, TensionOnly
 from tests.support.differences import slope
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 SLACK = SlackElement(share=0.03, soft=0.2, fold=5.0)
 BENDS = SlackElement(share=1.0, soft=1.0, fold=0.0)
 STRAINS = (-0.9, -0.5, -0.15, 0.0, 0.07, 0.2, 0.5)  # slack, in between and taut

@@ -16,6 +16,8 @@ from riser_soil.riser.line_ends import End, SupportRotation
 from riser_soil.riser.springs import EndSpring
 from tests.support.sample_line import DIRECTION, UP, Sample, sample
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
 NORMAL = np.cross(DIRECTION, UP)
 

@@ -23,6 +23,8 @@ from tests.support.scenes import MIDWATER, dynamic, in_water, riser_scene
 from tests.support.seas import water_of
 from tests.support.stage_histories import stage_histories
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 LEVEL, TIME = np.array([-100.0, -20.0, 0.0]), np.array([10.0, 30.0, 35.0])
 VELOCITY = np.array(
     [

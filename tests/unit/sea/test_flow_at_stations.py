@@ -19,6 +19,8 @@ from tests.support.dense_chain import residual, tangent
 from tests.support.differences import WEIGHTS
 from tests.support.sample_line import Sample, sample
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 
 class Counted(NamedTuple):
     """Uneven water, the times (n,) at which it was asked for, and how often that was (1,)."""

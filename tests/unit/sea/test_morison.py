@@ -16,6 +16,8 @@ from riser_soil.sea.pipe import Pipe
 from tests.support.dense_chain import residual
 from tests.support.sample_line import sample
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 RHO, D, L = 1025.0, 0.3, 6.0
 CD, CDT, CA, CAT = 1.1, 0.05, 0.9, 0.1
 DRAG_ONLY, MASS_ONLY = Weights(0.0, 1.0, 0.0, 0.0), Weights(1.0, 0.0, 0.0, 0.0)

@@ -22,6 +22,8 @@ from tests.support import sample_water
 from tests.support.dense_chain import residual
 from tests.support.sample_line import Sample, sample
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 RHO, G, CD, CA = 1025.0, 9.81, 1.1, 0.9
 ALL = Weights(1.0, 1.0, 0.0, 0.0)
 HEIGHT, PERIOD, DEPTH, MIDDLE = 1.5, 7.0, 30.0, np.array([4.0, -2.0, -6.0])

@@ -32,6 +32,8 @@ from tests.support.sample_line import sample
 from tests.support.scenes import in_water
 from tests.support.seas import components_of, water_of
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 G, T, LEVEL, DIRECTION = 9.81, 10.0, 7.0, 0.6
 CASES = [
     ("stokes", 6.0, 25.0),

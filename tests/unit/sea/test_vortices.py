@@ -24,6 +24,8 @@ from tests.support.sample_line import RHO, Sample, sample
 from tests.support.scenes import Mapping, dynamic, prescribed, riser_scene, static
 from tests.support.through_water import resistance
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 D, U, MIDDLE, WIDTH = 0.3, 0.8, 0.18, 0.08
 TAU = np.array([0.0, 0.0, 1.0])
 ALONG_X = np.array([1.0, 0.0, 0.0])

@@ -20,6 +20,8 @@ from riser_soil.sea.stream_kernels import FlowAtStations
 from riser_soil.sea.waterline import dry_height, wet_share, wet_slope
 from tests.support.dense_chain import residual
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 D, L, LEVEL, WEIGHT = 0.6, 6.0, 2.0, 2000.0
 
 

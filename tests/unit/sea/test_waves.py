@@ -14,6 +14,8 @@ from riser_soil.sea.current import SteadyCurrent, at_heights
 from riser_soil.sea.flows import Sea, WaterMotion
 from riser_soil.sea.waves import linear_waves
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 G, LEVEL = 9.81, 7.0
 DEPTHS = [np.inf, 400.0, 30.0, 4.0]
 STRETCHINGS: list[Literal["wheeler", "vertical"]] = ["wheeler", "vertical"]
