@@ -41,7 +41,7 @@ class Awaited(Line):
 
     def do(self) -> None:
         super().do()
-        while not self._other.exists():
+        while not self._other.exists() or not self._other.read_text(encoding="utf-8"):
             pass
 
 
