@@ -42,7 +42,7 @@ from riser_soil.core.kernel_cache import (
     version_folder,
 )
 from riser_soil.core.kernel_sources import PACKAGE, SOURCES
-from riser_soil.core.kinds import Kind, kind_of, mark
+from riser_soil.core.kinds import BY_ADDRESS, Kind, classes, kind_of, mark
 
 NAME = PACKAGE.name
 ROOM = 1 << 26  # bytes that all kernels need, and some more
@@ -83,7 +83,9 @@ class Kernel:
         """What is compiled for arguments; a kind, such as arrays that are not packed, may be of several types."""
         signature = tuple(map(numba.typeof, arguments))
         if signature not in self._made:
-            with keeping(place_of(self.py_func, kind_of(arguments))):
+            if not BY_ADDRESS.isdisjoint(classes(kind := kind_of(arguments))):
+                raise TypeError(f"{_name(self.py_func)}: bound kernels are among its arguments; it is called by Bound")
+            with keeping(place_of(self.py_func, kind)):
                 self._made[signature] = numba.njit([signature], cache=True, **OPTIONS)(self.py_func)
         return self._made[signature]
 

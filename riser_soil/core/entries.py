@@ -22,7 +22,7 @@ from numba import types
 
 from riser_soil.core.arrays import IntArray
 from riser_soil.core.compiled import OPTIONS, compiling, keeping, njit, place_of
-from riser_soil.core.kinds import ArrayKind, Kind, TupleKind, classes, mark
+from riser_soil.core.kinds import BY_ADDRESS, ArrayKind, Kind, TupleKind, classes, mark
 from riser_soil.core.packed import layout
 from riser_soil.core.side_by_side import side_by_side
 
@@ -32,10 +32,15 @@ as that of addresses, once as that of entries, for kernels that call others."""
 
 
 class Calls(NamedTuple):
-    """Bound kernels for compiled code: their functions and rows (n,). The kernels are kept with the arrays."""
+    """Bound kernels for compiled code: their functions and rows (n,). The kernels are kept with the arrays. Functions
+    are there once a `Bound` is called.
+    """
 
     functions: Any
     rows: Any
+
+
+BY_ADDRESS.add(Calls)
 
 
 class Entry:

@@ -47,7 +47,7 @@ def cores() -> int:
 def processor() -> str:
     """Name of the processor, and what it can do where the system says so: the same where machine code is the same."""
     known = [platform.machine()]
-    with suppress(OSError), open("/proc/cpuinfo", encoding="utf-8", errors="replace") as told:
-        first = told.read().split("\n\n")[0].splitlines()
+    with suppress(OSError), open("/proc/cpuinfo", encoding="utf-8", errors="replace") as file:
+        first = file.read().split("\n\n")[0].splitlines()
         known += [line for line in first if line.startswith(("model name", "flags", "Features", "CPU part"))]
     return "\n".join(known)

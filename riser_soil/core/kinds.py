@@ -48,6 +48,10 @@ def classes(kind: Kind) -> Iterator[type]:
         yield kind
 
 
+BY_ADDRESS: set[type] = set()
+"""NamedTuples of addresses: kernels that have them among their arguments are called by address alone."""
+
+
 def mark(kind: Kind) -> str:
     """A word for a kind."""
     return hashlib.sha256(repr(kind).encode()).hexdigest()[:12]

@@ -36,7 +36,7 @@ def side_by_side(jobs: Sequence[Job]) -> None:
     here = max(min(at_most() // size(), len(jobs)), 1)
     turned = [_turned(jobs, (here * rank() + n) / (here * size())) for n in range(here)]
     with _forks(turned[1:]):
-        _do(turned[0])
+        _do(turned[0], os.getppid())
 
 
 def at_most() -> int:
@@ -52,9 +52,10 @@ def _turned(jobs: Sequence[Job], share: float) -> list[Job]:
     return [*jobs[first:], *jobs[:first]]
 
 
-def _do(jobs: Sequence[Job]) -> None:
+def _do(jobs: Sequence[Job], parent: int) -> None:
+    """Do the jobs that are free, while this process has that parent."""
     for job in jobs:
-        if job.free:
+        if job.free and os.getppid() == parent:
             job.do()
 
 
@@ -90,8 +91,6 @@ def _fork(jobs: Sequence[Job]) -> list[int]:
     if fork:
         return [fork]
     try:
-        for job in jobs:
-            if job.free and os.getppid() == parent:
-                job.do()
+        _do(jobs, parent)
     finally:
         os._exit(0)

@@ -13,7 +13,7 @@ Each is an estimate of size, calibrated in `tests/verification/test_indicators.p
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -200,3 +200,11 @@ class FigureIndicators:
     def restore(self, saved: Saved) -> None:
         restore_all({"resolution": self._resolution}, saved)
         self.bending, self._largest = unpacked(saved["bending"]), saved["largest"].copy()
+
+
+def merged(of_figures: Mapping[str, Any], of_steps: Mapping[str, Any]) -> dict[str, Any]:
+    """Indicators of a line's figures and those of the steps, of all lines, as summary.json has them."""
+    merged = {**of_figures, **of_steps}
+    if "time_step" in of_steps:
+        merged["time_step"] = of_steps["time_step"] | of_figures["time_step"]
+    return merged

@@ -30,12 +30,19 @@ UNEVEN = 1e-6  # of five steps' time, by which they may differ
 _TENSION = "min_effective_tension"
 
 
-def vertex(t: Array, values: Array) -> Array:
-    """Vertex of the parabola through samples (3, ...) at t (3,); the middle one where it is no extreme of the three."""
+def parabola(t: Array, values: Array) -> tuple[Array, Array]:
+    """Slope at the middle one, and half the second derivative, of the parabola through samples (3, ...) at growing t,
+    (3,) or (3, ...).
+    """
     before, after = t[1] - t[0], t[2] - t[1]
     first, second = (values[1] - values[0]) / before, (values[2] - values[1]) / after
-    bend, slope = (second - first) / (before + after), (first * after + second * before) / (before + after)
-    turns = first * second < 0.0
+    return (first * after + second * before) / (before + after), (second - first) / (before + after)
+
+
+def vertex(t: Array, values: Array) -> Array:
+    """Vertex of the parabola through samples (3, ...) at t (3,); the middle one where it is no extreme of the three."""
+    slope, bend = parabola(t, values)
+    turns = (values[1] - values[0]) * (values[2] - values[1]) < 0.0
     return np.asarray(np.where(turns, values[1] - slope**2 / np.where(turns, 4.0 * bend, 1.0), values[1]))
 
 

@@ -20,6 +20,7 @@ from riser_soil.errors import ResultsError, RiserSoilError
 from riser_soil.results import folder as run_folder
 from riser_soil.results import vtkhdf
 from riser_soil.results.growing_file import reading
+from riser_soil.results.indicators import merged
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -259,10 +260,7 @@ def _stage_of_line(stage: dict[str, Any], line: str) -> dict[str, Any]:
     """A stage of the summary with a line's figures in it; indicators of the steps are those of all lines."""
     own, shared = stage["lines"][line], stage.get("indicators", {})
     figures = {key: value for key, value in (stage | own).items() if key not in OF_ALL}
-    indicators = shared | own.get("indicators", {})
-    if "time_step" in shared:
-        indicators["time_step"] = shared["time_step"] | indicators["time_step"]
-    return figures | {"indicators": indicators}
+    return figures | {"indicators": merged(own.get("indicators", {}), shared)}
 
 
 def load(path: Path, group: str = "") -> xr.Dataset:

@@ -9,6 +9,7 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.errors import ResultsError
+from riser_soil.results.peaks import parabola
 from riser_soil.results.read import Run
 
 
@@ -69,12 +70,6 @@ def stage_records(run: Run, name: str | None = None) -> StageRecords:
     return _of(run, named[-1], of_record)
 
 
-def all_stages(run: Run) -> list[StageRecords]:
-    """Every stage of which something was recorded, in turn."""
-    of_record = _stage_of_records(run)
-    return [_of(run, n, of_record) for n in range(len(run.summary["stages"])) if (of_record == n).any()]
-
-
 def _stage_of_records(run: Run) -> IntArray:
     """Number of the stage of each record, (nt,)."""
     return run["stage"].astype(int)
@@ -122,9 +117,7 @@ def peak(x: Array, q: Array) -> Array:
     """
     largest = q.argmax(axis=-1)
     i = np.clip(largest, 1, q.shape[-1] - 2)
-    a, b, c = (np.take_along_axis(q, (i + k)[..., None], axis=-1)[..., 0] for k in (-1, 0, 1))
-    before, after = x[i] - x[i - 1], x[i + 1] - x[i]
-    bend = ((c - b) / after - (b - a) / before) / (before + after)
-    slope = (b - a) / before + bend * before
+    three = np.stack([np.take_along_axis(q, (i + k)[..., None], axis=-1)[..., 0] for k in (-1, 0, 1)])
+    slope, bend = parabola(np.stack([x[i + k] for k in (-1, 0, 1)]), three)
     vertex = (i == largest) & (bend < 0.0)
-    return np.where(vertex, b - slope**2 / np.where(vertex, 4.0 * bend, 1.0), q.max(axis=-1))
+    return np.where(vertex, three[1] - slope**2 / np.where(vertex, 4.0 * bend, 1.0), q.max(axis=-1))

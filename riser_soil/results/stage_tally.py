@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -12,7 +12,7 @@ import numpy as np
 from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, unpacked
 from riser_soil.core.snapshot import Ledger, RunFacts, StepRecord
 from riser_soil.results.hung_figures import HungExtremes
-from riser_soil.results.indicators import StepIndicators
+from riser_soil.results.indicators import StepIndicators, merged
 from riser_soil.results.largest import Largest
 from riser_soil.results.line_tally import LineTally
 
@@ -108,7 +108,7 @@ class StageTally:
         if "" not in own:
             return whole | {"lines": own} | self.hung.nested
         only = own[""] | {"warnings": self.warnings}
-        return whole | only | {"indicators": _merged(only["indicators"], whole["indicators"])}
+        return whole | only | {"indicators": merged(only["indicators"], whole["indicators"])}
 
     @property
     def _worst_residual(self) -> tuple[float, float]:
@@ -149,11 +149,3 @@ class StageTally:
     def _owners(self) -> dict[str, Stateful]:
         owners: dict[str, Stateful] = {"residual": self._residual, "indicators": self.indicators, "hung": self.hung}
         return owners | {f"line/{name}" if name else "line": tally for name, tally in self.lines.items()}
-
-
-def _merged(of_figures: Mapping[str, Any], of_steps: Mapping[str, Any]) -> dict[str, Any]:
-    """Indicators of the only line and those of the steps."""
-    merged = {**of_figures, **of_steps}
-    if "time_step" in of_steps:
-        merged["time_step"] = of_steps["time_step"] | of_figures["time_step"]
-    return merged

@@ -23,8 +23,6 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.saved_state import Saved
 from riser_soil.riser.spatial_directors import SpatialFrames, SpatialOrientation
 
-NO_FRAMES = np.empty((0, 3, 3))
-
 
 class PlanarOrientation:
     """Trial orientation of a plane line. angle (nn,) [rad], initial angle of element ends alpha0 (ne, 2)."""
@@ -46,11 +44,6 @@ class PlanarOrientation:
     def turned(self) -> Array:
         """What the dofs have turned by (nn, 1): the angles."""
         return self.angle[:, None]
-
-    @property
-    def end_frames(self) -> tuple[Array, Array]:
-        """No section frames, as there is one stiffness."""
-        return NO_FRAMES, NO_FRAMES
 
     def motion(self, v: Array, a: Array) -> tuple[Array, Array]:
         """q' and q'' (ne, 4, 2) from rates and accelerations of the dofs (nn, 3)."""

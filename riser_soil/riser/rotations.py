@@ -117,13 +117,6 @@ def left_tangent(rotation: Vec) -> Mat:
 
 
 @njit
-def right_tangent(rotation: Vec) -> Mat:
-    """T_R: rate of the rotation vector to spin in the rotated axes; the transpose of T_L."""
-    _, b, c = exp_coefficients(dot(rotation, rotation))
-    return _polynomial(1.0, -b, c, rotation)
-
-
-@njit
 def left_tangent_inverse(rotation: Vec) -> Mat:
     """Inverse of T_L, for rotations below 2 pi."""
     return _polynomial(1.0, -0.5, inverse_coefficient(dot(rotation, rotation)), rotation)
@@ -131,7 +124,9 @@ def left_tangent_inverse(rotation: Vec) -> Mat:
 
 @njit
 def right_tangent_derivative(rotation: Vec, m: Vec) -> Mat:
-    """d(T_R(Theta) m)/dTheta at fixed m, the geometric stiffness of a moment m given in the unturned axes."""
+    """d(T_R(Theta) m)/dTheta at fixed m, the geometric stiffness of a moment m given in the unturned axes. T_R, the
+    transpose of T_L: rate of the rotation vector to spin in the rotated axes.
+    """
     _, b, c = exp_coefficients(dot(rotation, rotation))
     db, dc = exp_slopes(dot(rotation, rotation))
     once = cross(rotation, m)

@@ -52,11 +52,6 @@ class SpatialOrientation:
         """What the dofs have turned by (nn, 3): the increments, as frames are exact after any number of turns."""
         return self.Theta
 
-    @property
-    def end_frames(self) -> tuple[Array, Array]:
-        """Section frames (ne, 3, 3) at the elements' first and second ends."""
-        return self.frame1, self.frame2
-
     def motion(self, v: Array, a: Array) -> tuple[Array, Array]:
         """q' and q'' (ne, 4, 3) from rates and accelerations of the dofs (nn, 6), angular ones in body axes."""
         rate, acceleration = (np.empty((len(self.T0), 4, 3)) for _ in range(2))
@@ -169,16 +164,8 @@ def _to_body_axes(moment: Array, Theta: Array) -> Array:
 
 
 @njit
-def node_frames(Rn: Array, Theta: Array) -> tuple[Array, Array]:
-    """R = Rn exp(Theta) and H = Rn T_L(Theta), which gives the spatial spin H dTheta; each (nn, 3, 3)."""
-    R, H = np.empty_like(Rn), np.empty_like(Rn)
-    write_node_frames(Rn, Theta, R, H)
-    return R, H
-
-
-@njit
 def write_node_frames(Rn: Array, Theta: Array, R: Array, H: Array) -> None:
-    """Write what `node_frames` returns."""
+    """Write R = Rn exp(Theta) and H = Rn T_L(Theta), which gives the spatial spin H dTheta; each (nn, 3, 3)."""
     for i in range(Rn.shape[0]):
         before, turn = matrix(Rn[i]), vector(Theta[i])
         store(matmul(before, rotations.exp(turn)), R[i])

@@ -82,6 +82,12 @@ def test_kernels_that_are_bound_after_a_call_are_there_at_the_next() -> None:
     np.testing.assert_allclose(out, -2 * 2.0 * (3 + 7 + 11))
 
 
+def test_python_does_not_call_kernels_with_addresses_that_may_not_be_there_yet() -> None:
+    given_bound = calls(Bound(add, Packed(given(np.ones((2, 4)))), Packed(np.zeros(2))))
+    with pytest.raises(TypeError, match="call_each: bound kernels are among its arguments; it is called by Bound"):
+        call_each(given_bound)
+
+
 MANY = """
 import os
 import numpy as np

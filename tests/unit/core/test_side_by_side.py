@@ -60,6 +60,13 @@ def test_each_job_is_done_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
         assert count > 1 or {job.process for job in jobs} == {os.getpid()}
 
 
+def test_what_is_done_already_is_not_done_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(AT_MOST, "1")
+    (tmp_path / "1").write_text("7", encoding="utf-8")
+    side_by_side([Line(tmp_path / "0"), Line(tmp_path / "1", only_in=1)])
+    assert (tmp_path / "0").exists()
+
+
 def test_two_jobs_are_done_at_the_same_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(AT_MOST, "2")
     here, there = tmp_path / "here", tmp_path / "there"
