@@ -64,7 +64,7 @@ class Run:
         assert self.assembly.soil is not None
         grid = self.assembly.soil.whole.grid
         points, order = grid.nodes.points, list(grid.family.vtk)
-        return calculix.Block(points, grid.nodes.cells[:, order], grid.supported(points))
+        return calculix.Block(points, grid.nodes.cells[:, order], grid.fixed_directions(points))
 
     @property
     def unknowns(self) -> int:

@@ -205,7 +205,7 @@ class Assembly:
         if soil is None:
             return model([*parts, *on_ground])
         in_motion = soil.in_motion if isinstance(stage, DynamicStage) else []
-        soil.whole.hold(by_boundary=not any(part.name == "soil boundary" for part in in_motion))
+        soil.whole.fix_boundary(not any(part.name == "soil boundary" for part in in_motion))
         cushion = []
         if soil.cushion is not None and (self.is_laid_in(stage) or not self.soil_bears):
             soil.cushion.stays, cushion = not self.soil_bears, [soil.cushion]

@@ -57,7 +57,7 @@ class Hung:
 
     def _hold(self, fixed: bool) -> None:
         for body in self.bodies.values():
-            body.hold(fixed)
+            body.fix(fixed)
         if self.joints is not None:
             self.joints.open = float(fixed)
 

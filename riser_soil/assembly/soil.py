@@ -11,8 +11,8 @@ from riser_soil.riser.line import Line
 from riser_soil.scene.scene import Scene
 from riser_soil.scene.soil import GeneratedMesh, MeshFile, SoilScene
 from riser_soil.scene.soil_law import density_of, law_of, volumes, weight_of
-from riser_soil.soil.asked_fields import fields_of
 from riser_soil.soil.grid import DistributedMesh, block_grid, file_grid
+from riser_soil.soil.requested_fields import fields_of
 from riser_soil.soil.slices import slice_grid
 from riser_soil.soil.soil import Soil
 

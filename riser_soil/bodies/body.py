@@ -62,8 +62,8 @@ class MovingBody(MovingNodes):
         frames = SpatialFrames(np.eye(3)[None], np.zeros((0, 2, 3, 3)))
         super().__init__(name, np.array(position, dtype=float)[None], frames, np.zeros(1), np.eye(3), active)
         self.turns, self.lever = turns, lever
-        self._out: list[int] = []
-        self.hold(False)
+        self._fixed: list[int] = []
+        self.fix(False)
 
     def place(self, point: Array) -> Array:
         """Where a point (3,) in body axes is at the accepted state (3,) [m]."""
@@ -78,16 +78,16 @@ class MovingBody(MovingNodes):
         finally:
             self.prescribed = free
 
-    def hold(self, fixed: bool) -> None:
-        """Whether it is kept from moving; until the next call."""
+    def fix(self, fixed: bool) -> None:
+        """Fix all of its dofs, or let it move; until the next call."""
         self.prescribed = np.full(self.size, fixed)
         self.prescribed[3:] |= not self.turns
-        self.prescribed[self._out] = True
+        self.prescribed[self._fixed] = True
 
     def keep_in_plane(self, across: int) -> None:
         """Keep it in its plane across x (0) or y (1)."""
-        self._out = out_of_plane(across, self.frames.R[0])
-        self.hold(False)
+        self._fixed = out_of_plane(across, self.frames.R[0])
+        self.fix(False)
 
     def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
         for values in (u, v, a):
@@ -100,7 +100,7 @@ class MovingBody(MovingNodes):
         return ""
 
     def free_turns(self, state: State) -> Array:
-        """Motions (k, size) in each direction by the lever, and about each axis by a radian; none of a body held."""
+        """Motions (k, size) in each direction by the lever, and about each axis by a radian; none of a fixed body."""
         motions = np.zeros((self.size, self.size))
         motions[:3, :3] = self.lever * np.eye(3)
         turn = self.trial(state).turn

@@ -98,19 +98,19 @@ class JointPlaces(NamedTuple):
 class Joints:
     """All joints of a scene (group F), made in the lines' and bodies' present configuration.
 
-    keep: of each, whether the second point stays where it is, on an arm of the first node; else it comes to the first.
+    stays: of each, whether the second point stays where it is, on an arm of the first node; else it comes to the first.
     """
 
     name = NAME
     traits = Traits("F", symmetric=True)
 
-    def __init__(self, joints: Sequence[JointOf], keep: Sequence[bool]) -> None:
+    def __init__(self, joints: Sequence[JointOf], stays: Sequence[bool]) -> None:
         self.joints, self.open = joints, 0.0
         self.active = joints[0].sides[0].field.active
         at = self._places(None)
         arm = np.array([[side.arm for side in joint.sides] for joint in joints])
-        for n, kept in enumerate(keep):
-            if kept:
+        for n, second_stays in enumerate(stays):
+            if second_stays:
                 there = at.x[n, 1] + at.R[n, 1] @ arm[n, 1]
                 arm[n, 0] = at.R[n, 0].T @ (there - at.x[n, 0])
         k, kr = (np.array([getattr(joint, name) for joint in joints]) for name in ("translation", "rotation"))
@@ -171,7 +171,7 @@ class Joints:
         return Work()
 
     def commit(self, state: State) -> None:
-        """Nothing is kept."""
+        """Joints have no history."""
 
     def acting(self, state: State) -> tuple[Array, Array, Array]:
         """Forces [N] and moments [N.m] on the second node of each joint, at its point (m, 3), and gaps (m, 3) [m]."""

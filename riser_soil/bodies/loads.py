@@ -123,13 +123,13 @@ class BodyWeight(CompiledPart):
 
 
 class ReleaseData(NamedTuple):
-    """Springs k [N/m] and kr [N.m/rad] to a place x (3,) and an orientation R (3, 3); left (1,): the share there is."""
+    """Springs k [N/m] and kr [N.m/rad] to a place x (3,) and an orientation R (3, 3). share (1,): of k, kr in use."""
 
     k: float
     kr: float
     x: Array
     R: Array
-    left: Array
+    share: Array
 
 
 @njit
@@ -141,33 +141,34 @@ def _turned(part: ReleaseData, at: Posture) -> Vec:
 
 @add_forces.of(ReleaseData)
 def _add_release(part: ReleaseData, at: SpatialConfiguration, out: LineForces) -> None:
-    here, left = posture(at), part.left[0]
-    force = scale(left * part.k, sub(here.x, vector(part.x)))
-    add_to_dofs(out.force[0], force, vecmat(scale(left * part.kr, _turned(part, here)), here.H))
+    here, share = posture(at), part.share[0]
+    force = scale(share * part.k, sub(here.x, vector(part.x)))
+    add_to_dofs(out.force[0], force, vecmat(scale(share * part.kr, _turned(part, here)), here.H))
 
 
 @add_tangent.of(ReleaseData)
 def _add_tangent_of_release(
     part: ReleaseData, at: SpatialConfiguration, maps: Maps, weights: Weights, K: Array
 ) -> None:
-    here, left = posture(at), part.left[0]
+    here, share = posture(at), part.share[0]
     turn = _turned(part, here)
     spin = matmul(transpose(here.H), matmul(rotations.left_tangent_inverse(turn), here.H))
     lever = moment_stiffness(matrix(at.Rn[0]), vector(at.Theta[0]), scale(part.kr, turn))
     turning = matadd(matscale(part.kr, spin), lever)
-    add_blocks(K[0], weights.force * left, isotropic(part.k), NONE, NONE, turning)
+    add_blocks(K[0], weights.force * share, isotropic(part.k), NONE, NONE, turning)
 
 
 @add_energy.of(ReleaseData)
 def _no_energy(part: ReleaseData, at: SpatialConfiguration, energy: Array) -> None:
-    """None is told, as a static stage has no account."""
+    """Springs of a release have no energy here: a static stage has no energy balance."""
 
 
 class Release(CompiledPart):
-    """What has held a body, in the stage in which it is let go: a spring to where it is, and to how it stands, that has
-    the reaction at first and gets as soft as the load factor grows (group F).
+    """Springs in place of a body's fixture, in the static stage that sets it free: to its place and to its orientation,
+    with the fixture's reaction at first. They soften to nothing as the load factor grows (group F).
 
-    reaction (6,): conjugate to its dofs as it was held [N, N.m]. With a potential, so that it can't tip the body over.
+    reaction (6,): conjugate to the dofs of the fixed body [N, N.m]. Springs have a potential, which a constant moment
+    has not; so they can't tip the body over.
     """
 
     name = "release"
@@ -185,4 +186,4 @@ class Release(CompiledPart):
         return self._springs
 
     def renew_kernel_data(self, start: float, end: float) -> None:
-        self._springs.left[0] = 1.0 - end
+        self._springs.share[0] = 1.0 - end

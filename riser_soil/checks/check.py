@@ -170,7 +170,7 @@ def _condensed(scene: Scene, soil: SoilAssembly) -> Iterator[str]:
     assert scene.soil is not None
     if soil.condensed is not None:
         yield "soil: condensed to what the riser touches of its surface; the whole is recovered for results"
-        if soil.condensed.top.compliance.kept:
+        if soil.condensed.top.compliance.on_disk:
             yield "soil: what earlier runs have found of its compliance is at hand"
     elif scene.soil.is_linear:
         yield f"soil: solved for as a whole, not condensed: {soil.why_whole}"

@@ -24,9 +24,9 @@ def as_list(values: npt.NDArray[Any]) -> list[Any]:
 
 def views(vector: Array, shapes: Sequence[tuple[int, ...]]) -> list[Array]:
     """Arrays of these shapes, which lie one behind the other along a vector's last axis; axes before it stay."""
-    first, found = 0, []
+    first, arrays = 0, []
     for shape in shapes:
         end = first + math.prod(shape)
-        found.append(vector[..., first:end].reshape(*vector.shape[:-1], *shape))
+        arrays.append(vector[..., first:end].reshape(*vector.shape[:-1], *shape))
         first = end
-    return found
+    return arrays

@@ -118,11 +118,11 @@ def _back_substitute(ab: Array, x: Array, end: int, first: int, b: int) -> None:
 def _back_substitute_whole(ab: Array, x: Array, end: int, first: int, b: int, reach: int) -> None:
     """Back substitution for rows with as many numbers beyond their pivots as `reach` says.
 
-    All products but one are summed before the number found last is there; the rest is added in two sums.
+    All products but one are summed before the unknown solved last is there; the rest is added in two sums.
     """
     if end <= first:
         return
-    found = x[end]
+    unknown = x[end]
     for k in range(end - 1, first - 1, -1):
         even, odd = x[k], 0.0
         for j in range(2, reach + 1):
@@ -131,8 +131,8 @@ def _back_substitute_whole(ab: Array, x: Array, end: int, first: int, b: int, re
             else:
                 even -= ab[k, b + j] * x[k + j]
         inverse = ab[k, b]
-        found = (even - odd) * inverse - ab[k, b + 1] * inverse * found
-        x[k] = found
+        unknown = (even - odd) * inverse - ab[k, b + 1] * inverse * unknown
+        x[k] = unknown
 
 
 @njit

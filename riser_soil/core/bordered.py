@@ -37,14 +37,14 @@ def condense(
 @njit
 def _coupled_columns(rows: IntArray, right: Array, below: Array) -> IntArray:
     """Unknowns of the border that these rows are coupled with."""
-    found, count = np.empty(right.shape[1], dtype=np.int64), 0
-    for j in range(found.size):
+    columns, count = np.empty(right.shape[1], dtype=np.int64), 0
+    for j in range(columns.size):
         for k in rows:
             if right[k, j] != 0.0 or below[k, j] != 0.0:
-                found[count] = j
+                columns[count] = j
                 count += 1
                 break
-    return found[:count]
+    return columns[:count]
 
 
 @njit

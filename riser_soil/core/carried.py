@@ -20,42 +20,42 @@ SAME = 1e-9  # of the distance to the farthest of them: a way that is none
 EASED = 0.01  # of the gradient's matrix, added to it: where no points lie ahead in a direction there is no gradient
 
 
-def carried(places: Array, held: Array, asked: Array) -> Array:
-    """Rows (n, k) at places (n, 3) of the field that holds rows (m, k) at others (m, 3)."""
-    if not len(asked):
-        return held[:0]
-    apart, near = cKDTree(places).query(asked, k=min(AROUND, len(places)))
-    out = held[near[:, 0]]
-    _carry(places, held, asked, apart, near, out)
+def carried(places: Array, values: Array, targets: Array) -> Array:
+    """Values (n, k) at targets (n, 3) of a field that has values (m, k) at places (m, 3)."""
+    if not len(targets):
+        return values[:0]
+    apart, near = cKDTree(places).query(targets, k=min(AROUND, len(places)))
+    out = values[near[:, 0]]
+    _carry(places, values, targets, apart, near, out)
     return out
 
 
 @njit
-def _carry(places: Array, held: Array, asked: Array, apart: Array, near: IntArray, out: Array) -> None:
-    """Carry rows (n, k), those of the points nearest, near[:, 0], on to the places."""
+def _carry(places: Array, values: Array, targets: Array, apart: Array, near: IntArray, out: Array) -> None:
+    """Correct the nearest points' values in `out` (n, k) by the gradient on the way to the targets."""
     shares = np.empty(near.shape[1])
     for i in range(len(out)):
         farthest = apart[i, -1]
         if not apart[i, 0] > SAME * farthest:
             continue
-        _write_shares(places, asked[i], apart[i], near[i], shares)
+        _write_shares(places, targets[i], apart[i], near[i], shares)
         for c in range(out.shape[1]):
             low = high = base = out[i, c]
-            found = base
+            value = base
             for k in range(1, shares.size):
                 if apart[i, k] < WITHIN * farthest:
-                    beside = held[near[i, k], c]
-                    found += shares[k] * (beside - base)
+                    beside = values[near[i, k], c]
+                    value += shares[k] * (beside - base)
                     low, high = min(low, beside), max(high, beside)
-            out[i, c] = min(max(found, low), high)
+            out[i, c] = min(max(value, low), high)
 
 
 @njit
-def _write_shares(places: Array, asked: Array, apart: Array, near: IntArray, shares: Array) -> None:
+def _write_shares(places: Array, target: Array, apart: Array, near: IntArray, shares: Array) -> None:
     """Write shares (k,) of the changes from the nearest point, the first, to the others, for the way from there: a
     linear fit, weighed by how far they lie ahead and how near.
     """
-    farthest, way, matrix = apart[-1], asked - places[near[0]], np.zeros((3, 3))
+    farthest, way, matrix = apart[-1], target - places[near[0]], np.zeros((3, 3))
     for k in range(1, shares.size):
         along = square = 0.0
         for i in range(3):

@@ -26,16 +26,16 @@ class PackageSources:
         """A word for some modules, by their dotted names, and all of the package that they import, one through the
         other. Modules outside the package count with their own text; those without a file have none.
         """
-        found = sorted(f"{path} {self._digest(path)}" for path in self.needed(modules))
-        return hashlib.sha256("\n".join(found).encode()).hexdigest()[:16]
+        digests = sorted(f"{path} {self._digest(path)}" for path in self.needed(modules))
+        return hashlib.sha256("\n".join(digests).encode()).hexdigest()[:16]
 
     def needed(self, modules: Iterable[str]) -> set[str]:
         """Files with these modules and all of the package that they import: in the package by their names there."""
-        found, todo = set[str](), {path for module in modules if (path := self._file(module))}
+        files, todo = set[str](), {path for module in modules if (path := self._file(module))}
         while todo:
-            found |= todo
-            todo = {path for known in todo for path in self._imports(known)} - found
-        return found
+            files |= todo
+            todo = {path for file in todo for path in self._imports(file)} - files
+        return files
 
     def _file(self, module: str) -> str:
         """The file of a module; "" where there is none."""

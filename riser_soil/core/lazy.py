@@ -13,6 +13,6 @@ class LazyModule:
         self._module = module
 
     def __getattr__(self, name: str) -> Any:
-        found = getattr(importlib.import_module(self._module), name)
-        setattr(self, name, found)
-        return found
+        attribute = getattr(importlib.import_module(self._module), name)
+        setattr(self, name, attribute)
+        return attribute

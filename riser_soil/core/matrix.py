@@ -90,10 +90,10 @@ class Matrix:
 
     def magnitudes(self, sizes: Array) -> Array:
         """Sums (size,) over this rank's blocks of the entries' absolute values times sizes (size,) of their columns."""
-        found = np.zeros(self._size)
+        sums = np.zeros(self._size)
         for key, block in self._blocks.items():
-            add_magnitudes(self.values[key], block.rows, block.cols, sizes, found)
-        return found
+            add_magnitudes(self.values[key], block.rows, block.cols, sizes, sums)
+        return sums
 
     def destroy(self) -> None:
         self.stored.destroy()

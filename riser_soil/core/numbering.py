@@ -79,8 +79,8 @@ class Numbering:
 
 
 def _sign(field: Field) -> Array:
-    found: Array = getattr(field, "sign", np.ones(field.size))
-    return found
+    sign: Array = getattr(field, "sign", np.ones(field.size))
+    return sign
 
 
 def _set_offsets(fields: Sequence[Field]) -> int:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 else:
     np = LazyModule("numpy")
 
-Seen = TypeVar("Seen")
+RecordType = TypeVar("RecordType")
 Where = Literal["nodes", "model", "summary", "sections", "across", "soil points", "soil cells", "step"]
 Need = Literal[
     "",
@@ -80,7 +80,7 @@ class Figure:
 
 
 @dataclass(frozen=True)
-class OutputQuantity(Generic[Seen]):
+class OutputQuantity(Generic[RecordType]):
     """A quantity of the results.
 
     units, text and sign (what its sign means, where it has one) go into results.nc, with units as UDUNITS writes them.
@@ -97,16 +97,16 @@ class OutputQuantity(Generic[Seen]):
     text: str
     where: Where
     sign: str = ""
-    get: Callable[[Seen], Any] | None = None
+    get: Callable[[RecordType], Any] | None = None
     vector: bool = False
     dtype: str = "f8"
     needs: Need = ""
     always: bool = False
     figures: tuple[Figure, ...] = ()
 
-    def value(self, seen: Seen) -> Any:
-        """See `get`; None where it is not known."""
-        return cast("Record", seen).get(self.name) if self.get is None else self.get(seen)
+    def value(self, record: RecordType) -> Any:
+        """The quantity's value in a record, with its shape as at `get`; None where it is not known."""
+        return cast("Record", record).get(self.name) if self.get is None else self.get(record)
 
     @property
     def chosen(self) -> bool:

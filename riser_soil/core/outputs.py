@@ -368,8 +368,10 @@ def choices() -> tuple[str, ...]:
     return tuple(output.name for output in outputs if output.chosen)
 
 
-def left_out(fields: Collection[str]) -> set[str]:
-    """Names of the outputs that are not recorded where these are: what tells of sections goes with what is in them."""
+def unrecorded(fields: Collection[str]) -> set[str]:
+    """Names of the outputs that are not recorded where these are. Figures of whole sections go with the values across
+    them.
+    """
     unwanted = {name for name in choices() if name not in fields}
     of_sections = {output.name for output in ACROSS_RISER}
     return unwanted | (of_sections if of_sections & unwanted else set())
@@ -383,9 +385,9 @@ def known(names: Iterable[str], has: Collection[str]) -> tuple[str, ...]:
 
 def figures(order: Sequence[str]) -> list[tuple[OutputQuantity[Record], Figure]]:
     """All figures of the summary with their outputs: those named in their order, then the rest in the table's."""
-    found = [(output, figure) for output in of_instant() for figure in output.figures]
+    pairs = [(output, figure) for output in of_instant() for figure in output.figures]
     rank = {name: place for place, name in enumerate(order)}
-    return sorted(found, key=lambda item: rank.get(item[1].name, len(rank)))
+    return sorted(pairs, key=lambda item: rank.get(item[1].name, len(rank)))
 
 
 def upper_end(final: Mapping[str, Any]) -> str:

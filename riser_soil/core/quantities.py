@@ -179,8 +179,8 @@ def by_key(models: dict[str, type[BaseModel]]) -> Callable[[Any], str | None]:
             return "<word>"
         if isinstance(value, BaseModel):
             return tag_of(type(value))
-        found = [key for key in models if isinstance(value, dict) and key in value]
-        return tag_of(models[found[0]]) if found else None
+        keys = [key for key in models if isinstance(value, dict) and key in value]
+        return tag_of(models[keys[0]]) if keys else None
 
     return pick
 

@@ -58,7 +58,7 @@ class Renewing(Protocol):
     name: str
 
     def renew(self, state: State) -> bool:
-        """Look whether that is due after a step that left an accepted state, and do it; whether it was, the same on all
+        """Change it after a step that ended in an accepted state, where that is due; whether it was, the same on all
         ranks. Collective.
         """
         ...
@@ -116,11 +116,11 @@ def owners(model: Model) -> dict[str, Stateful]:
     """
     named: list[tuple[str, Stateful]] = [(f"fields/{field.name}", field) for field in model.fields]
     named += [(f"parts/{name_of(part)}", part) for part in with_role(model.parts, Stateful)]
-    found = dict(named)
-    if len(found) < len(named):
+    by_name = dict(named)
+    if len(by_name) < len(named):
         names = [name for name, _ in named]
         raise ValueError(f'more than one keeps its state as "{max(names, key=names.count)}"')
-    return found
+    return by_name
 
 
 def name_of(part: Part) -> str:

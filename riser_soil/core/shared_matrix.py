@@ -79,11 +79,11 @@ class SharedMatrix:
 
     def times(self, x: Array) -> Array:
         """Product with the unknowns; collective."""
-        given, found = self.mat.createVecs()
-        given.array_w[:] = x
-        self.mat.mult(given, found)
-        values = np.array(found.array_r)
-        for vector in (given, found):
+        operand, product = self.mat.createVecs()
+        operand.array_w[:] = x
+        self.mat.mult(operand, product)
+        values = np.array(product.array_r)
+        for vector in (operand, product):
             vector.destroy()
         return values
 

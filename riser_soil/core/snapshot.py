@@ -30,7 +30,7 @@ class SoilSnapshot:
     von_mises: Array  # (nc,) Pa, cell averages
     strength_used: Array  # (nc,) equivalent stress over its limit, cell averages; 0 where there is no limit
     plastic_strain: Array  # (nc,) equivalent plastic strain, cell averages
-    asked: Mapping[str, Array] = field(default_factory=dict)  # (nc,) or (nc, 9), cell averages: output.soil_fields
+    requested: Mapping[str, Array] = field(default_factory=dict)  # (nc,) or (nc, 9), cell averages: output.soil_fields
 
 
 @dataclass(frozen=True, eq=False)

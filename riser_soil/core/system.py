@@ -175,7 +175,7 @@ class System:
 
     def magnitudes(self, state: State, weights: Weights) -> Array:
         """Sizes (size,) of the terms that this rank's residual is made of, to be summed by the numbering [N]: those of
-        the tangent at held rates, which takes the matrix' place, times those of the coordinates. See `residual_norm`.
+        the tangent at fixed rates, which takes the matrix' place, times those of the coordinates. See `residual_norm`.
         """
         self.assemble(state, weights._replace(shift_v=0.0, shift_a=0.0))
         return self.matrix.magnitudes(np.concatenate([f.magnitudes(state) for f in self.model.fields]))
@@ -205,8 +205,8 @@ class System:
         """
         at_start, ended = ((forces.inertia, forces.force, forces.end) for forces in (first, last))
         work = _work_of(self.prescribed_dofs, share, at_start, bulk, ended, u)
-        put_in, taken, ahead = self.sum([float(joules) for joules in work])
-        return put_in, taken, ahead
+        put_in, removed, ahead = self.sum([float(joules) for joules in work])
+        return put_in, removed, ahead
 
     def reactions(self, forces: Forces) -> Array:
         """Reactions at this rank's prescribed dofs [N, N.m]."""

@@ -1,4 +1,4 @@
-"""How a law remembers: mean stress that cycles of shear about a held strain leave, strain that cycles of stress add.
+"""How a law remembers: mean stress after cycles of shear about a constant strain, strain that cycles of stress add.
 
 A law whose loops close keeps both. Where it hardens by a backstress that fades (Armstrong & Frederick), a mean stress
 relaxes by the same share in each cycle, and a mean load adds the same strain in each, without end (J. Lemaitre, J.-L.
@@ -19,14 +19,14 @@ from riser_soil.material.path import shear_path
 from riser_soil.material.point import MaterialPoint, drive
 
 CYCLES, ROWS = 14, 40  # cycles of one amplitude; rows from turn to turn
-HELD = 0.03  # shear strain at the top of the cycles of strain
+TOP = 0.03  # shear strain at the top of the cycles of strain
 AMPLITUDES = tuple(10.0 ** (0.5 * k) for k in range(-6, -3))
 LOW, HIGH = 0.1, 0.7  # of the stress at that strain, between which cycles of stress go
-KEPT = 1e-3  # of the stress: less is no mean stress
+ZERO_MEAN = 1e-3  # a mean stress below this share of the stress counts as zero
 
 
 class StressRelaxation(NamedTuple):
-    """Cycles of strain from HELD down by twice the amplitude and back: shear stress at HELD when they begin and at the
+    """Cycles of strain from TOP down by twice the amplitude and back: shear stress at TOP when they begin and at the
     end of each (CYCLES + 1,), and mean stress of each (CYCLES,) [Pa].
     """
 
@@ -38,7 +38,7 @@ class StressRelaxation(NamedTuple):
     def lost(self) -> float:
         """Share of the mean stress that a cycle takes; nan where there is no more to take."""
         first, last = self.mean[0], self.mean[-1]
-        if abs(first) <= KEPT * abs(self.top[0]):
+        if abs(first) <= ZERO_MEAN * abs(self.top[0]):
             return np.nan
         return float(1.0 - (max(last / first, 0.0)) ** (1.0 / (CYCLES - 1)))
 
@@ -61,7 +61,7 @@ def memory(point: MaterialPoint) -> Memory:
 
 
 def _relaxation(point: MaterialPoint, amplitude: float) -> StressRelaxation:
-    stress = drive(point, shear_path(_between(HELD - 2.0 * amplitude, HELD), ROWS)).stress[:, 4]
+    stress = drive(point, shear_path(_between(TOP - 2.0 * amplitude, TOP), ROWS)).stress[:, 4]
     turns = (stress - stress[0])[ROWS::ROWS]
     top, bottom = turns[::2], turns[1::2]
     return StressRelaxation(amplitude, top, 0.5 * (bottom + top[1:]))
@@ -83,7 +83,7 @@ def _between(low: float, high: float) -> Iterator[float]:
 def in_words(memory: Memory) -> list[str]:
     """How a soil remembers cycles in words, a line each."""
     lines = [
-        f"{CYCLES} cycles of shear strain up to {HELD:g}:",
+        f"{CYCLES} cycles of shear strain up to {TOP:g}:",
         f"{'amplitude [-]':>15} {'first [kPa]':>12} {'last [kPa]':>12} {'of the mean lost a cycle [%]':>29}",
     ]
     for each in memory.relaxation:

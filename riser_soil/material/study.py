@@ -20,7 +20,7 @@ from riser_soil.soil import mandel
 
 FILES = CURVE, CYCLES, MEMORY, PICTURE = "material.csv", "material_cycles.csv", "material_memory.csv", "material.png"
 USUAL_DEPTH = 1.0  # m, at most half of the block's depth
-_LEFT = f"{CURVE}, {CYCLES}, {MEMORY} and {PICTURE}"
+_NAMES = f"{CURVE}, {CYCLES}, {MEMORY} and {PICTURE}"
 SIGNED = "# riser_soil material: "  # the first line's beginning, by which the program knows its files
 CLOSED = 1e-9  # how far a cycle may end from its beginning, over its width
 
@@ -46,7 +46,7 @@ def study(scene: Scene, folder: Path, path: Path | None = None, depth: float | N
     tables = {CURVE: _curve_columns(curve), CYCLES: _cycle_columns(cycles), MEMORY: table_columns(remembered)}
     _leave(folder, heading, tables)
     return "\n".join(
-        [*_summary_lines(soil, z, strain_path, curve, cycles), *in_words(remembered), f"written: {_LEFT} in {folder}"]
+        [*_summary_lines(soil, z, strain_path, curve, cycles), *in_words(remembered), f"written: {_NAMES} in {folder}"]
     )
 
 

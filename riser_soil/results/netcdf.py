@@ -98,7 +98,7 @@ class SeriesFile:
     """Writer of results.nc.
 
     arcs: (nn,) m, arc lengths of the nodes of each line, by its name; "" of the only one. Several lines have a group
-    each, and `more` are variables of other groups, by their paths. left_out: names of SERIES that are not wanted, by
+    each, and `more` are variables of other groups, by their paths. unrecorded: names of SERIES that are not wanted, by
     line. ledger: of `ledger_variables`. sections: number of those across the riser, offsets (m,) [m] in them. goes_on:
     with the file of an earlier run, up to what is restored.
     Rows given to `record` and `step` live in memory until `flush`.
@@ -110,7 +110,7 @@ class SeriesFile:
         arcs: Mapping[str, Array],
         title: str,
         version: str,
-        left_out: Mapping[str, Collection[str]] | None = None,
+        unrecorded: Mapping[str, Collection[str]] | None = None,
         ledger: Mapping[str, Variable] | None = None,
         sections: int = 0,
         offsets: Sequence[float] = (),
@@ -124,7 +124,7 @@ class SeriesFile:
             f"{group(line)}{name}": _in_group(v, group(line))
             for line in arcs
             for name, v in known.items()
-            if name not in shared and name not in (left_out or {}).get(line, ())
+            if name not in shared and name not in (unrecorded or {}).get(line, ())
         }
         of_instant = shared | along | dict(more or {})
         self._variables = of_instant | self._of_step

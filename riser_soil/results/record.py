@@ -75,14 +75,14 @@ class Recorder:
         self._tallies, self._keeping = Tallies(facts, [*arcs], soil_mesh), keeping
         self._lock, self._folder = lock, folder
         self._fields = fields
-        left_out = {line: outputs.left_out(wanted) for line, wanted in fields.items()}
+        unrecorded = {line: outputs.unrecorded(wanted) for line, wanted in fields.items()}
         self._ledger = ledger_variables(facts.dissipating, facts.working)
         self._series = SeriesFile(
             folder / run_folder.SERIES,
             arcs,
             facts.title,
             facts.version,
-            left_out=left_out,
+            unrecorded=unrecorded,
             ledger=self._ledger,
             sections=facts.sections,
             offsets=facts.offsets,

@@ -22,7 +22,7 @@ def soil_frame(stamp: float, soil: SoilSnapshot, fields: Collection[str]) -> Fra
     return Frame(
         stamp,
         {output.name: output.value(soil) for output in wanted if output.where == "soil points"},
-        {output.name: output.value(soil) for output in wanted if output.where == "soil cells"} | {**soil.asked},
+        {output.name: output.value(soil) for output in wanted if output.where == "soil cells"} | {**soil.requested},
     )
 
 
@@ -69,7 +69,7 @@ class RunFrames:
         if soil is None:
             raise ValueError("pictures are due, so the soil's snapshot is needed too: both files share one time axis")
         self._soil.add(soil_frame(stamp, soil, {name for fields in self._fields.values() for name in fields}))
-        return waiting + _size(vars(soil)) + _size(soil.asked)
+        return waiting + _size(vars(soil)) + _size(soil.requested)
 
     def flush(self) -> None:
         """Write all frames so far to disk."""

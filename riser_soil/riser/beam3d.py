@@ -284,7 +284,7 @@ def _tangent(D: ElementStiffness, at: Shape, response: SpatialResponse, workspac
 @njit
 def _write_last_change(at: Shape, response: SpatialResponse, changes: Array) -> None:
     """Write how the forces change as node 2 spins about the third axis: as the whole element turns about it, they turn
-    with it, and the load on them changes. So eight moves are left to compute, which fill vectors.
+    with it, and the load on them changes. So eight moves remain to be computed, which fill vectors.
     """
     axes, length = at.frame.axes, at.frame.length
     spin = (axes[0][2], axes[1][2], axes[2][2])

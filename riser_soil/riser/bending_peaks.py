@@ -32,8 +32,8 @@ def largest_between_nodes(arc: Array, values: Array, slope: Array) -> tuple[Arra
         top[inside] = np.minimum(highest, np.maximum(a, b) + 0.25 * L**2 * _largest_bend(length, first, second, inside))
     e = (~_exceeds(top.max(axis=1, keepdims=True), top)).argmax(axis=1)
     row = np.arange(e.size)
-    found = top[row, e], arc[e] + place[row, e] * length[e], e
-    value, at, element = (each.reshape(shape)[()] for each in found)
+    rows = top[row, e], arc[e] + place[row, e] * length[e], e
+    value, at, element = (each.reshape(shape)[()] for each in rows)
     return value, at, element
 
 

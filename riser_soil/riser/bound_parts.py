@@ -35,7 +35,7 @@ KernelData = tuple[Any, ...]
 class BoundParts:
     """Kernels of parts of a line in a configuration. Its methods return kernels, to be called in this order.
 
-    at: the configuration; data: the parts' kernel data; forces: their residuals, as they are found there.
+    at: the configuration; data: the parts' kernel data; forces: their residuals there.
     """
 
     def __init__(self, at: Configuration, data: Sequence[KernelData]) -> None:
@@ -48,7 +48,7 @@ class BoundParts:
         return [Bound(clear, forces), *(bound(add_forces, data, here, forces) for data in self.data)]
 
     def collect(self) -> Bound:
-        """Add what acts on elements to what acts on nodes; once for residuals that were found."""
+        """Add what acts on elements to what acts on nodes; once after each evaluation of the residuals."""
         return Bound(collect, self.packed_at, self.packed_forces)
 
     def write_residual(self, out: Array) -> Bound:
@@ -56,7 +56,7 @@ class BoundParts:
         return Bound(write_residual, self.packed_at, self.packed_forces, Packed(out))
 
     def find_water(self) -> list[Bound]:
-        """Find the water again where residuals were found, as another configuration may have been asked for since."""
+        """Evaluate the water's motion in the residuals' configuration, as another one may have been evaluated since."""
         return [bound(find_water, data, self.packed_at) for data in self.data if type(data) in find_water.kernels]
 
     def tangent(self, data: Sequence[KernelData], maps: Packed, weights: Packed, K: Packed) -> list[Bound]:
@@ -68,7 +68,7 @@ class BoundParts:
         return bound(write_maps, self.at, maps, weights)
 
     def turning(self, weights: Packed, K: Packed) -> list[Bound]:
-        """Add to K what the residuals found change by as the elements' ends turn."""
+        """Add to K the derivative of the evaluated residuals by the turning of the elements' ends."""
         conjugate, turned = self._turning
         return [
             Bound(weigh, self.packed_forces, weights, conjugate),

@@ -26,7 +26,7 @@ BALANCED = 1e-11  # misfit, see `_misfit`
 ROUND_OFF = 1e-9  # the misfit under which it may stall
 ROUNDED = 1e-4  # of the tension: what counts beside the load
 MOST_ITERATIONS = 50
-NEAR = 0.01  # between logarithms of H or mu: where a balance must be found at once
+NEAR = 0.01  # between logarithms of H or mu: where Newton's method must converge without steps between
 SHORTEST_STEP = 1e-3  # of Newton's
 STRIDE = 4.0  # factor between the values of H that are tried
 CLOSE = 1.05  # the same where H is then let free
@@ -215,9 +215,9 @@ def _improved(trial: CableBalance, size: float, goal: SpanCondition | None) -> t
             V=trial.V + fraction * step.V,
             q=trial.q + fraction * step.q,
         )
-        left = _misfit(further, goal)
-        if left < (1.0 - 0.1 * fraction) * size or fraction < SHORTEST_STEP:
-            return further, left
+        misfit = _misfit(further, goal)
+        if misfit < (1.0 - 0.1 * fraction) * size or fraction < SHORTEST_STEP:
+            return further, misfit
         fraction *= 0.5
 
 

@@ -112,7 +112,7 @@ class Maps(NamedTuple):
 
 
 def base_of(line: MovingNodes) -> Base:
-    """The accepted configuration of a line, as it is kept there."""
+    """The accepted configuration of a line, by the arrays that the line has."""
     if isinstance(line.frames, PlanarFrames):
         return PlanarBase(line.x, line.chord, line.frames.angle, line.frames.alpha0, line.loose)
     return SpatialBase(line.x, line.chord, line.frames.R, line.frames.T0, line.loose)
@@ -165,7 +165,7 @@ def write_maps(at: Configuration, maps: Maps, weights: Weights) -> None:
 
 @bound_by_type
 def write_turning(at: Configuration, F: Array, G: Array) -> None:
-    """Write to G (ne, 2, r, r) the derivative of P^T F by the rotation dofs, F (ne, 2, d) held."""
+    """Write to G (ne, 2, r, r) the derivative of P^T F by the rotation dofs, F (ne, 2, d) constant."""
 
 
 @bound_by_type

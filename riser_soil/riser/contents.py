@@ -8,7 +8,7 @@ contents at s then have the acceleration
 so that the pipe bears m times its negative, and their weight. The second term is Coriolis's, the third the centrifugal
 one. No term with the rate of m comes in, as each slug keeps its mass on its way.
 
-Contents at rest that fill the pipe evenly count in the mass and the weight of its elements. Here is what is left: what
+Contents at rest that fill the pipe evenly count in the mass and the weight of its elements. Here is the rest: what
 slugs have beyond those, and the second and third term of all that flows. By the shape functions N of `hermite` they are
 
     (M q'' + C q' + K q)_a,   M = int m N_a N_b ds,   C = int 2 m u N_a dN_b/ds ds,   K = int m u^2 N_a d2N_b/ds2 ds,

@@ -131,13 +131,13 @@ def initial_frames(rotation: Array, T0: Array, basis: Array) -> PlanarFrames | S
 @njit
 def write_ends(angle: Array, alpha0: Array, end_angle: Array, tangent: Array, normal: Array) -> None:
     """Write angle (ne, 2), tangent and normal (ne, 2, 2) of element ends; two at one angle share its sine."""
-    known, cosine, sine = math.nan, math.nan, math.nan
+    last, cosine, sine = math.nan, math.nan, math.nan
     for e in range(alpha0.shape[0]):
         for side in range(2):
-            found = angle[e + side] + alpha0[e, side]
-            if found != known:
-                known, cosine, sine = found, math.cos(found), math.sin(found)
-            end_angle[e, side] = found
+            direction = angle[e + side] + alpha0[e, side]
+            if direction != last:
+                last, cosine, sine = direction, math.cos(direction), math.sin(direction)
+            end_angle[e, side] = direction
             tangent[e, side, 0], tangent[e, side, 1] = cosine, sine
             normal[e, side, 0], normal[e, side, 1] = -sine, cosine
 

@@ -91,7 +91,7 @@ class Line(MovingNodes):
     def keep_in_plane(self, across: int) -> None:
         """Keep a line in space, which lies in a plane across x (0) or y (1), in it."""
         assert isinstance(self.frames, SpatialFrames)
-        self._ends.keep(out_of_plane(across, self.frames.R[0]))
+        self._ends.fix(out_of_plane(across, self.frames.R[0]))
 
     @property
     def prescribed(self) -> BoolArray:
@@ -172,10 +172,10 @@ class Line(MovingNodes):
         not physical for a pipe, and an end spring would count the turns. A slack wire that is let go snaps into waves
         of its elements: steps that jump over these turn the tension's energy into a motion that there is not.
         """
-        trials, found = self.once(LineTrials), np.zeros(2, dtype=np.int64)
+        trials, elements = self.once(LineTrials), np.zeros(2, dtype=np.int64)
         trials.now.move(state)
-        bound(write_folded, trials.now.at, trials.base.packed, Packed(found))()
-        folded, swung = as_list(found)
+        bound(write_folded, trials.now.at, trials.base.packed, Packed(elements))()
+        folded, swung = as_list(elements)
         return self.folding(folded, self.length.size if before is None else swung)
 
     def folding(self, folded: int, swung: int) -> str:

@@ -54,8 +54,8 @@ class End:
     turning: Callable[[float], SupportRotation] | None = None
     heaves: bool = False
 
-    def held(self, dimension: int) -> int:
-        """How many of its coordinates are prescribed, the vertical one being the last."""
+    def fixed_coordinates(self, dimension: int) -> int:
+        """Number of its coordinates that are prescribed: the first ones, as the vertical one is the last."""
         return (dimension - self.heaves) if self.prescribed else 0
 
 
@@ -74,23 +74,23 @@ class LineEnds:
         self._ndof = self._dimension + frames.dofs
         unturned = frames.turn(np.zeros((nodes, frames.dofs)))
         self._supports = self._bases = {node: unturned.at(node).copy() for node, _ in self._ends}
-        self._moved: dict[int, tuple[Motion, float, Array, Array]] = {}
-        self._out: list[int] = []  # dofs of all nodes that are prescribed not to move
+        self._motions: dict[int, tuple[Motion, float, Array, Array]] = {}
+        self._fixed: list[int] = []  # dofs of all nodes that are prescribed not to move
         self.prescribe_spin(False)
 
-    def keep(self, dofs: list[int]) -> None:
+    def fix(self, dofs: list[int]) -> None:
         """Prescribe that some dofs of all nodes do not move."""
-        self._out = dofs
+        self._fixed = dofs
         self.prescribe_spin(False)
 
     def prescribe_spin(self, spin: bool) -> None:
         """Whether the start of a line in space is kept from spinning about the pipe's axis; until the next call."""
         prescribed, d = np.zeros((self._nodes, self._ndof), dtype=bool), self._dimension
         for node, end in self._ends:
-            prescribed[node, : end.held(d)] = True
+            prescribed[node, : end.fixed_coordinates(d)] = True
             prescribed[node, d:] = end.rotation_fixed
         prescribed[0, d] |= spin and d == 3
-        prescribed[:, self._out] = True
+        prescribed[:, self._fixed] = True
         self.prescribed: BoolArray = prescribed.ravel()
         self._dofs: IntArray = np.flatnonzero(self.prescribed)
 
@@ -124,34 +124,34 @@ class LineEnds:
 
         reach: by end, the share (nn,) that each node takes.
         """
-        for node, motion, held in self._moving():
-            rest = self._motion(node, motion, t, x)[0, :held] - moved[node, :held]
-            moved[:, :held] += np.outer(reach[node], rest)
+        for node, motion, count in self._moving():
+            rest = self._motion(node, motion, t, x)[0, :count] - moved[node, :count]
+            moved[:, :count] += np.outer(reach[node], rest)
 
     def prescribe(self, t: float, x: Array, u: Array, v: Array, a: Array) -> None:
         """Write increments, rates and accelerations of prescribed dofs into the field's slices; nodes at x (nn, d)."""
         for values in (u, v, a):
             values[self._dofs] = 0.0
-        for node, motion, held in self._moving():
-            at = slice(node * self._ndof, node * self._ndof + held)
-            u[at], v[at], a[at] = (each[:held] for each in self._motion(node, motion, t, x))
+        for node, motion, count in self._moving():
+            at = slice(node * self._ndof, node * self._ndof + count)
+            u[at], v[at], a[at] = (each[:count] for each in self._motion(node, motion, t, x))
         for node, end in self._ends:
             if end.rotation_fixed and end.turning is not None:
                 self._turn(node, end.turning(t), self.support(node, t), (u, v, a))
 
     def _moving(self) -> Iterator[tuple[int, Motion, int]]:
-        """Nodes whose place is prescribed, with their motion and how many of their coordinates are."""
+        """Nodes whose place is prescribed, with their motion and the number of their coordinates that are."""
         for node, end in self._ends:
             if end.prescribed and end.motion is not None:
-                yield node, end.motion, end.held(self._dimension)
+                yield node, end.motion, end.fixed_coordinates(self._dimension)
 
     def _motion(self, node: int, motion: Motion, t: float, x: Array) -> Array:
-        """Increment, velocity and acceleration (3, d) by which a motion moves its node; kept for its time and place."""
-        kept = self._moved.get(node)
-        if kept is None or kept[0] is not motion or kept[1] != t or kept[2] is not x:
-            moved = _motion_in_axes(np.array(motion(t)), self._origin, self._basis, x[node])
-            kept = self._moved[node] = motion, t, x, moved
-        return kept[3]
+        """Increment, velocity and acceleration (3, d) by which a motion moves its node; cached by time and place."""
+        cached = self._motions.get(node)
+        if cached is None or cached[0] is not motion or cached[1] != t or cached[2] is not x:
+            rows = _motion_in_axes(np.array(motion(t)), self._origin, self._basis, x[node])
+            cached = self._motions[node] = motion, t, x, rows
+        return cached[3]
 
     def _turn(self, node: int, turning: SupportRotation, support: Array, values: tuple[Array, Array, Array]) -> None:
         """Write the increment, rate and acceleration of a rotation that follows its support."""

@@ -105,16 +105,16 @@ def folded(arc: float, length: float, diameter: float, ends: Array, chord: Array
     Tangents (2, d) at its ends and chord (d,) as accepted: where the element was bent double before, the reason gives
     its bend, which no shorter step prevents.
     """
-    found = (
+    fold = (
         f"the riser is folded at arc {arc:.6g} m, where an element's end turns by more than 90 degrees from its chord"
     )
     first, second = _swings(ends, chord / np.linalg.norm(chord))
     swing = max(abs(first), abs(second))
     if swing < BENT_DOUBLE:
-        return f"{found}; start nearer to the shape sought, or take shorter elements or steps"
+        return f"{fold}; start nearer to the shape sought, or take shorter elements or steps"
     radius = length / abs(first - second)
     return (
-        f"{found}; it had come to {math.degrees(swing):.0f} degrees before: loads or motion close a bend there, "
+        f"{fold}; it had come to {math.degrees(swing):.0f} degrees before: loads or motion close a bend there, "
         f"whose radius is down to {radius:.3g} m, {radius / diameter:.2g} diameters, on an "
         f"element of {length:.3g} m; much shorter elements follow it further, and show whether it becomes a kink"
     )

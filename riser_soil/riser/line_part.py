@@ -1,8 +1,7 @@
 """Parts that act on a line: the base of all, and those whose formulas are kernels, one by one or together.
 
-What a system asks of parts with kernels at a trial state, these find in a configuration of the line that all of its
-parts share (`placed_line`). Nothing is kept between two calls but where the line is and what its parts have found there
-last.
+Parts with kernels are evaluated in a trial configuration of the line, which all of its parts share (`placed_line`).
+Between two calls nothing is cached but that configuration and the forces that were evaluated in it last.
 """
 
 from __future__ import annotations
@@ -46,7 +45,7 @@ class LinePart:
         return Work()
 
     def commit(self, state: State) -> None:
-        """Nothing is kept."""
+        """By default a part has no history."""
 
     def element_forces(self, state: State) -> Array | None:
         """Element residual (ne, 2 ndof) of all groups, of what acts within the elements; None for nothing."""
@@ -74,7 +73,7 @@ def overrides(part: LinePart, method: str) -> bool:
 class CompiledPart(LinePart, ABC):
     """Base of the parts whose formulas are kernels; a part has kernel data, and history if any.
 
-    after_forces: whether its kernels of energy and work read what that of its forces has found at the trial.
+    after_forces: whether its kernels of energy and work read what the kernel of its forces has written.
     """
 
     name: str
@@ -90,7 +89,7 @@ class CompiledPart(LinePart, ABC):
         return self.make_kernel_data()
 
     def kernel_data(self) -> KernelData:
-        """The part's kernel data, see `part_kernels`."""
+        """Arrays and constants that the part's kernels read and write; their type selects the kernels."""
         data: KernelData = self._data
         return data
 
@@ -99,7 +98,7 @@ class CompiledPart(LinePart, ABC):
 
     @property
     def reads(self) -> Sequence[CompiledPart]:
-        """Parts of the line whose findings its kernels read, so that these are evaluated first."""
+        """Parts of the line whose results its kernels read, so that these are evaluated first."""
         return ()
 
     @cached_property
@@ -153,8 +152,8 @@ class LineParts:
     """Parts of one line that have kernels, evaluated together: a single one, or all that act on it.
 
     name: the line's; parts: in the order in which they are evaluated; data: their kernel data. forces: their residuals
-    as found last, at the state `found` by the count of the line's configuration. accepted: whether the states are
-    accepted ones, at which the line is placed once for all; but for work, which needs the one where the step begins.
+    as evaluated last, in the configuration of count `found`. accepted: whether the states are accepted ones, at
+    which the line is placed once for all; but for work, which needs the one where the step begins.
     """
 
     def __init__(self, line: MovingNodes, parts: Sequence[CompiledPart], accepted: bool = False) -> None:
@@ -168,10 +167,10 @@ class LineParts:
         self._first = [each for part in parts for each in part.reads if each not in parts]
         self._after_forces = any(part.after_forces for part in parts)
         self._groups = {group for part in parts for group in part.traits.groups}
-        self._find, self._collect = in_turn(*self._kernels.find_forces()), self._kernels.collect()
+        self._write_forces, self._collect = in_turn(*self._kernels.find_forces()), self._kernels.collect()
 
     def renew(self, start: float, end: float) -> None:
-        """Write what depends on the time into the kernel data, for a step between two times [s] by another solver."""
+        """Write what depends on time into the kernel data, for a step between two times [s] by another solver."""
         self._trials.start, self._trials.end = start, end
         self._trials.forget()
         self._renew()
@@ -192,17 +191,17 @@ class LineParts:
         """Residuals at a trial state, as they act on elements and on nodes."""
         self.go_to(state)
         if self.found != self._placed.count:
-            self._find_anew()
+            self._evaluate()
         return self.forces
 
-    def _find_anew(self) -> None:
-        self._find()
+    def _evaluate(self) -> None:
+        self._write_forces()
         self.found = self._placed.count
 
     def residual(self, state: State, forces: Forces) -> None:
         """Add the parts' residuals at a trial state."""
         self.go_to(state)
-        self._find_anew()
+        self._evaluate()
         self._collect()
         at, out = self.line.part, self.forces
         if "I" in self._groups:
@@ -244,17 +243,18 @@ class LineParts:
     def energy(self, state: State) -> Energy:
         """The parts' energy at a trial state."""
         self._place(state)
-        return Energy(*self._found_energy())
+        return Energy(*self._energies())
 
     def kinetic_energy(self, state: State) -> float:
         """Kinetic energy [J] of parts that have no other, at a trial state."""
         self.go_to(state, velocities_alone=True)
-        return float(self._found_energy()[0])
+        return float(self._energies()[0])
 
-    def _found_energy(self) -> list[float]:
-        energy, find = self._energy
+    def _energies(self) -> list[float]:
+        """Kinetic, strain and potential energy [J] in the configuration that the line is placed in."""
+        energy, add_energy = self._energy
         energy[:] = 0.0
-        find()
+        add_energy()
         return as_list(energy)
 
     @cached_property
@@ -309,7 +309,7 @@ class LineParts:
     def forces_on_nodes(self, state: State) -> Array:
         """Residual (nn, ndof) of what acts on nodes themselves."""
         self.go_to(state)
-        self._find_anew()
+        self._evaluate()
         return self.forces.inertia + self.forces.force
 
 

@@ -132,8 +132,8 @@ class DirectorMotion:
 
     def _start(self, t: float, rates: Iterable[Array]) -> None:
         self._t, self.data.elapsed[0] = t, 0.0
-        for kept, rate in zip(self.data.rate, rates, strict=True):
-            kept[...] = rate
+        for stored, rate in zip(self.data.rate, rates, strict=True):
+            stored[...] = rate
 
     def go_to(self, t: float) -> None:
         """To a time of the step, or to its start."""

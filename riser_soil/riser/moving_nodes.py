@@ -29,13 +29,13 @@ class Trial:
     ) -> None:
         self.state, self.x, self.chord, self._turning = state, x, chord, turning
         self._v, self._a = rates
-        self._kept: dict[Hashable, Any] = {}
+        self._cache: dict[Hashable, Any] = {}
 
     def once(self, key: Hashable, make: Callable[[Trial], Any]) -> Any:
         """A value that a part computes at this trial, cached under a key of its own."""
-        if key not in self._kept:
-            self._kept[key] = make(self)
-        return self._kept[key]
+        if key not in self._cache:
+            self._cache[key] = make(self)
+        return self._cache[key]
 
     @cached_property
     def turn(self) -> Orientation:
@@ -143,7 +143,7 @@ class MovingNodes:
         return made
 
     def forget(self) -> None:
-        """Drop the trials that are kept."""
+        """Drop the cached trials."""
         self._trials.forget()
 
     def _make_trial(self, state: State) -> Trial:

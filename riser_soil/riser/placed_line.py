@@ -23,8 +23,8 @@ class LineBase:
     def update(self) -> None:
         """Write where the line is accepted now; a line that is accepted elsewhere has other arrays."""
         if self._updated is not self._line.x:
-            for kept, given in zip(self.packed.value, base_of(self._line), strict=True):
-                kept[...] = given
+            for target, source in zip(self.packed.value, base_of(self._line), strict=True):
+                target[...] = source
             self._updated = self._line.x
 
 

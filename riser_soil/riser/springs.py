@@ -63,8 +63,8 @@ class EndSpring(CompiledPart):
         return kind(self.node, self.stiffness, *supports)
 
     def renew_kernel_data(self, start: float, end: float) -> None:
-        for kept, t in ((self._data.before, start), (self._data.support, end)):
-            kept[:] = self.line.support(self.node, t)
+        for support, t in ((self._data.before, start), (self._data.support, end)):
+            support[:] = self.line.support(self.node, t)
 
 
 @njit

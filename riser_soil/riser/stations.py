@@ -63,8 +63,8 @@ def points(L: Array, xi: Array) -> Stations:
 def value_at(N: Array, p: int, q: Array, e: int, D: Size) -> tuple[float, ...]:
     """Value (d,) at station p of all, N (ne, ng, 4), which lies in element e, of q (ne, 4, d)."""
     (N1, N2, N3, N4), d, at = numbers_at(N, 4 * p, FOUR), len(D), 4 * len(D) * e
-    found: tuple[float, ...] = combined(((N1, q, at), (N2, q, at + d), (N3, q, at + 2 * d), (N4, q, at + 3 * d)), D)
-    return found
+    value: tuple[float, ...] = combined(((N1, q, at), (N2, q, at + d), (N3, q, at + 2 * d), (N4, q, at + 3 * d)), D)
+    return value
 
 
 @njit

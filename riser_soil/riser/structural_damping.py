@@ -78,8 +78,8 @@ def _write_chord_rates(v: Array, out: Array) -> None:
 @njit
 def _state(part: PlanarViscosity | SpatialViscosity, at: Configuration, e: int) -> Heaped | None:
     """State of element e, with its viscosity in place of its stiffness."""
-    found: Heaped | None = heaped(part.viscosity.law, e, at.chord[e], part.viscosity.L[e], part.viscosity.EA[e])
-    return found
+    state: Heaped | None = heaped(part.viscosity.law, e, at.chord[e], part.viscosity.L[e], part.viscosity.EA[e])
+    return state
 
 
 @njit

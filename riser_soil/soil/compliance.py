@@ -32,12 +32,12 @@ from riser_soil.errors import SolveError
 from riser_soil.soil.soil import Soil
 
 AT_ONCE = 16  # nodes whose columns are solved for in one call
-HELD = 1 << 28  # bytes of columns in memory, where they can't be kept on disk; others are solved for again
+MEMORY = 1 << 28  # bytes of columns in memory, where they can't be written to disk; others are solved for again
 SAME_ROW = 1e-6  # of the top's longer side: how far points of a row are apart across it
 FORMAT = 1  # number of the files' format, and of how columns are computed and grouped
 SWITCH = "RISER_SOIL_COMPLIANCE"
-MOST = 1 << 30  # bytes of all files; soils that were not asked for longest go first
-LEFT = 1 << 30  # bytes of the disk that stay free
+DISK = 1 << 30  # bytes of all files; those of the soils used least recently are removed first
+FREE_DISK = 1 << 30  # bytes of the disk that stay free
 CHECKSUM = 64  # bytes, at the beginning of a file
 
 
@@ -45,21 +45,21 @@ class Compliance:
     """Inverse of the stiffness of soil in linear elasticity, as far as it is asked for; on one rank.
 
     columns: displacements of the top by unit forces on a node's three dofs; those of supported dofs are zero. They are
-    found for groups of nodes, in the whole soil. The stiffness is factorised, once, where an earlier run has not kept
-    a group. kept: whether one has kept any.
+    solved for by groups of nodes, in the whole soil. The stiffness is factorised, once, where a group is not on disk.
+    on_disk: whether an earlier run has written any.
     """
 
     def __init__(self, soil: Soil) -> None:
         self._soil, self._known, self._groups = soil, dict[int, Array](), dict[int, Array]()
-        self._in_memory = deque[int]()  # groups that could not be kept on disk
+        self._in_memory = deque[int]()  # groups that could not be written to disk
         self._numbering = Numbering(soil.grid.nodes.comm, [soil.field])
         rows = np.full(int(soil.field.global_index.max()) + 1, -1, dtype=np.int64)
         rows[soil.field.global_index] = self._numbering.index
         self.top: IntArray = rows[soil.surface.global_index]
         rank = np.argsort(_in_rows(soil.surface.points[:, :2]))
         self._group: IntArray = rank // AT_ONCE
-        self._files = KeptColumns(self._key())
-        self.kept = self._files.holds_any()
+        self._files = ColumnFiles(self._key())
+        self.on_disk = self._files.any_on_disk()
 
     def _key(self) -> str:
         """Key by the cells' matrices, which follow from mesh and law, their places in the system, and the top's."""
@@ -109,19 +109,19 @@ class Compliance:
         group = int(self._group[node])
         nodes = np.flatnonzero(self._group == group)
         if group not in self._groups:
-            self._groups[group] = self._kept(group, nodes)
+            self._groups[group] = self._columns_of_group(group, nodes)
         first = 3 * int(np.searchsorted(nodes, node))
         return self._groups[group][first : first + 3]
 
-    def _kept(self, group: int, nodes: IntArray) -> Array:
-        """Columns (3 nn, n) of a group: on disk, else in memory in the place of those that were found first."""
-        columns = self._files.find(group, (3 * len(nodes), self._numbering.free))
+    def _columns_of_group(self, group: int, nodes: IntArray) -> Array:
+        """Columns (3 nn, n) of a group: on disk, else in memory in the place of the oldest there."""
+        columns = self._files.read(group, (3 * len(nodes), self._numbering.free))
         if columns is not None:
             return columns
         reordered = self._computed(nodes)
-        columns = self._files.keep(group, reordered)
+        columns = self._files.write(group, reordered)
         if columns is reordered:
-            while self._in_memory and (len(self._in_memory) + 1) * reordered.nbytes > HELD:
+            while self._in_memory and (len(self._in_memory) + 1) * reordered.nbytes > MEMORY:
                 del self._groups[self._in_memory.popleft()]
             self._in_memory.append(group)
         return columns
@@ -182,15 +182,15 @@ def key_of(arrays: Iterable[Array | IntArray]) -> str:
     return digest.hexdigest()[:32]
 
 
-class KeptColumns:
+class ColumnFiles:
     """Groups of columns (k, n) of the soil of a key, by number."""
 
     def __init__(self, key: str) -> None:
         self._folder = _root() / key
         self._reads = self._writes = os.environ.get(SWITCH) != "off"
 
-    def find(self, group: int, shape: tuple[int, int]) -> Array | None:
-        """A group of columns as the file has them, which is mapped, not read; None where there is no whole one."""
+    def read(self, group: int, shape: tuple[int, int]) -> Array | None:
+        """A group of columns, mapped from its file; None where there is no whole file."""
         if not self._reads:
             return None
         try:
@@ -205,8 +205,8 @@ class KeptColumns:
             os.utime(self._folder)
         return columns
 
-    def keep(self, group: int, columns: Array) -> Array:
-        """Write columns to the file where possible; the columns in the file, which take no memory, or else the ones
+    def write(self, group: int, columns: Array) -> Array:
+        """Write columns to a file where possible; the columns mapped from it, which take no memory, or else the ones
         given.
         """
         if self._writes:
@@ -215,10 +215,10 @@ class KeptColumns:
             except OSError as err:
                 self._writes = False
                 compiled.tell(f"the soil's compliance is not kept for other runs ({err})")
-        kept = self.find(group, (columns.shape[0], columns.shape[1]))
-        return columns if kept is None else kept
+        mapped = self.read(group, (columns.shape[0], columns.shape[1]))
+        return columns if mapped is None else mapped
 
-    def holds_any(self) -> bool:
+    def any_on_disk(self) -> bool:
         """Whether columns are there, whole or not."""
         return self._reads and any(self._folder.glob("*.columns"))
 
@@ -252,10 +252,10 @@ def _make_workspace(folder: Path, size: int) -> None:
     OSError where they may not.
     """
     others = sorted((path for path in folder.parent.iterdir() if path != folder), key=_last_use)
-    while _size_below(folder.parent) + size > MOST and others:
+    while _size_below(folder.parent) + size > DISK and others:
         shutil.rmtree(others.pop(0), ignore_errors=True)
-    if _size_below(folder.parent) + size > MOST or shutil.disk_usage(folder).free < size + LEFT:
-        raise OSError(f"{folder.parent} may take {MOST >> 20} MB and leaves {LEFT >> 20} MB of the disk free")
+    if _size_below(folder.parent) + size > DISK or shutil.disk_usage(folder).free < size + FREE_DISK:
+        raise OSError(f"{folder.parent} may take {DISK >> 20} MB and leaves {FREE_DISK >> 20} MB of the disk free")
 
 
 def _last_use(path: Path) -> float:

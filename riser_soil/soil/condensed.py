@@ -24,7 +24,7 @@ from riser_soil.soil.compliance import Compliance
 from riser_soil.soil.soil import Soil
 from riser_soil.soil.surface import SoilTop
 
-SPARE, FEW = 1.5, 20  # times the nodes that must be reached, and more: up to so many are kept that were reached before
+SPARE, FEW = 1.5, 20  # nodes that are reached may be so many times those that must be, and so many more
 NO_FORCE = 1e-11  # of the largest force on a dof of the top: round-off where nothing presses
 
 
@@ -60,7 +60,7 @@ class CondensedTop:
     """Field "surface": the dofs of the soil's top, of which those that are not reached follow the others.
 
     They are prescribed: their increments are zero, and mean nothing. points, facets, committed, placed: as in
-    `SoilTop`. beside: dofs that are free to move, but are not reached.
+    `SoilTop`. unreached: dofs that are free to move, but are not reached.
     """
 
     name = "surface"
@@ -73,8 +73,8 @@ class CondensedTop:
         self.committed, self.placed = np.zeros_like(top.points), np.zeros_like(top.points)
         self.size, self.offset = top.size, 0
         self.owned: BoolArray = np.ones(top.size, dtype=bool)
-        self._held, self._soil = top.prescribed, soil
-        self._seen = IdentityCache[State, SurfaceAnswer](latest=2, first=1)
+        self._fixed, self._soil = top.prescribed, soil
+        self._answers = IdentityCache[State, SurfaceAnswer](latest=2, first=1)
         self.reach(np.empty(0, dtype=np.int64))
 
     @cached_property
@@ -84,13 +84,13 @@ class CondensedTop:
     def reach(self, nodes: IntArray) -> None:
         """Let forces act on these nodes, and on no others."""
         dofs = (3 * nodes[:, None] + np.arange(3)).ravel()
-        free = ~self._held[dofs]
+        free = ~self._fixed[dofs]
         columns = self.compliance.columns(nodes).reshape(self.size, -1) if len(nodes) else np.zeros((self.size, 0))
         self.reached = Reached(nodes, dofs[free], np.ascontiguousarray(columns[:, free]))
         self.prescribed: BoolArray = np.ones(self.size, dtype=bool)
         self.prescribed[self.reached.dofs] = False
-        self.beside: IntArray = np.flatnonzero(self.prescribed & ~self._held)
-        self._seen.forget()
+        self.unreached: IntArray = np.flatnonzero(self.prescribed & ~self._fixed)
+        self._answers.forget()
 
     def own(self, values: Array) -> Array:
         """The field's slice of a local array."""
@@ -106,7 +106,7 @@ class CondensedTop:
 
     def _at(self, state: State) -> SurfaceAnswer:
         """Kept for the first state of a step and the last two."""
-        return self._seen.made_of(state, self._answer)
+        return self._answers.made_of(state, self._answer)
 
     def _answer(self, state: State) -> SurfaceAnswer:
         at = self.reached.dofs
@@ -128,7 +128,7 @@ class CondensedTop:
 
     def commit(self, state: State) -> None:
         self.committed = self.displacement(state)
-        self._seen.forget()
+        self._answers.forget()
 
     def state(self) -> Saved:
         return {"committed": self.committed, "reached": self.reached.nodes}
@@ -170,7 +170,7 @@ class CondensedSoil:
 
     def residual(self, state: State, forces: Forces) -> None:
         own = self.top.own(forces.end)
-        self._met = np.unique(self.top.beside[own[self.top.beside] != 0.0] // 3)
+        self._met = np.unique(self.top.unreached[own[self.top.unreached] != 0.0] // 3)
         own[self.top.reached.dofs] += self.top.forces(state)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
@@ -222,8 +222,8 @@ class CondensedSoil:
         return nodes > SPARE * np.count_nonzero(self._wanted) + FEW
 
     def recover(self) -> Soil:
-        """The whole soil as committed, from the forces on its top and the undisturbed state: so it does not hang, to
-        the last bit, on how often it was asked for.
+        """The whole soil as committed, from the forces on its top and the undisturbed state: so it does not depend,
+        to the last bit, on how often it is recovered.
         """
         if not self._recovered:
             restore_all(self._owners, self._undisturbed)

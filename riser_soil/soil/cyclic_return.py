@@ -136,37 +136,37 @@ def _bring_back(point: _Point, stress: Array, alpha: Array, tangent: Array, s: A
     """Bring an elastic trial of the stress beyond the yield surface back to it, with its backstress and its elastic
     moduli, which become the consistent ones: Δp. s, n: see `_write_direction`.
     """
-    found = _slip(point, s, alpha, n)
-    _subtract_flow(point, found, alpha, n, tangent)
+    root = _slip(point, s, alpha, n)
+    _subtract_flow(point, root, alpha, n, tangent)
     for k in range(6):
-        stress[k] -= math.sqrt(1.5) * point.twice * found.slip * n[k]
-        alpha[k] = found.theta * (alpha[k] + ROOT * point.hardening * found.slip * n[k])
-    return found.slip
+        stress[k] -= math.sqrt(1.5) * point.twice * root.slip * n[k]
+        alpha[k] = root.theta * (alpha[k] + ROOT * point.hardening * root.slip * n[k])
+    return root.slip
 
 
 @njit
 def _slip(point: _Point, s: Array, alpha: Array, n: Array) -> _Trial:
     """Δp by Newton's method, kept where the root is known to lie, for a trial s and backstress α; n: its direction."""
     stiff = math.sqrt(1.5) * point.twice
-    low, found = 0.0, _at(0.0, point, s, alpha, n)
-    high = found.excess / stiff
+    low, trial = 0.0, _at(0.0, point, s, alpha, n)
+    high = trial.excess / stiff
     if point.gain.slow < math.inf:  # α may be beyond its bound
         high += math.sqrt(_product(alpha, alpha)) / stiff
-        found = _at(min(_guess(point, found), high), point, s, alpha, n)
-    least = max(CONVERGED * high, ROUND_OFF / stiff * found.size)
+        trial = _at(min(_guess(point, trial), high), point, s, alpha, n)
+    least = max(CONVERGED * high, ROUND_OFF / stiff * trial.size)
     for _ in range(MOST_ITERATIONS):
-        better = found.slip + found.excess / found.falls
+        better = trial.slip + trial.excess / trial.falls
         if better < low or better > high:
             better = 0.5 * (low + high)
-        done = abs(better - found.slip) <= least
-        found = _at(better, point, s, alpha, n)
-        if found.excess > 0.0:
+        done = abs(better - trial.slip) <= least
+        trial = _at(better, point, s, alpha, n)
+        if trial.excess > 0.0:
             low = better
-        elif found.excess < 0.0:
+        elif trial.excess < 0.0:
             high = better
         if done:
             break
-    return found
+    return trial
 
 
 @njit
@@ -209,15 +209,15 @@ def _guess(point: _Point, at_none: _Trial) -> float:
 
 
 @njit
-def _subtract_flow(point: _Point, found: _Trial, alpha: Array, n: Array, tangent: Array) -> None:
+def _subtract_flow(point: _Point, root: _Trial, alpha: Array, n: Array, tangent: Array) -> None:
     """From elastic moduli, to the consistent ones: dΔp = 2G n:dε/h; the direction turns with the strain and with what
     the backstress recalls, by b = 2G P dε + recall α dΔp across n, over |η|.
     """
     along, stiff = _product(n, alpha), math.sqrt(1.5) * point.twice
-    share = stiff * found.slip / found.size
+    share = stiff * root.slip / root.size
     for i in range(6):
-        turns = n[i] + found.slip / found.size * found.recalls * (alpha[i] - along * n[i])
-        flow = point.twice * (stiff / found.falls * turns - share * n[i])
+        turns = n[i] + root.slip / root.size * root.recalls * (alpha[i] - along * n[i])
+        flow = point.twice * (stiff / root.falls * turns - share * n[i])
         for j in range(6):
             tangent[i, j] -= share * point.twice * DEVIATOR[i, j] + flow * n[j]
 

@@ -40,7 +40,7 @@ else:
     np, mandel = LazyModule("numpy"), LazyModule("riser_soil.soil.mandel")
 
 STEEPEST = 60.0  # friction angle [deg]
-LEFT_AT_APEX = 1e-4  # of the elastic tangent, where the stress does not change: loose soil still has a matrix
+STIFFNESS_AT_APEX = 1e-4  # of the elastic tangent, where the stress does not change: loose soil still has a matrix
 
 
 class DruckerPrager(SoilLaw):
@@ -152,7 +152,7 @@ class FrictionalSoil:
         apex = np.flatnonzero((excess > 0.0) & at_apex)
         slip[apex] = q[apex] / (3.0 * self.shear[apex])
         stress[apex] = self.cohesion / self.slope * mandel.UNIT
-        tangent[apex] *= LEFT_AT_APEX
+        tangent[apex] *= STIFFNESS_AT_APEX
         elastic = mandel.elastic_strain(self.bulk, self.shear, stress - self.initial)
         stored = 0.5 * mandel.product(stress - self.initial, elastic)
         return StressUpdate(stress, tangent, np.column_stack((stress, history[:, 6] + slip)), stored, elastic)

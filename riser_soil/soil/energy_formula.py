@@ -15,7 +15,7 @@ from riser_soil.core.arrays import Array
 from riser_soil.soil import energy_kernel
 from riser_soil.soil.law import PLACES, STRESS
 from riser_soil.soil.law_source import LawError
-from riser_soil.soil.own_formula import OwnFormula, asked_of_user
+from riser_soil.soil.own_formula import OwnFormula, call_user_code
 
 STRAIN = tuple(f"strain_{place}" for place in PLACES)
 ZERO_STRESS = 1e-9  # stresses below this share of the moduli count as zero
@@ -30,11 +30,11 @@ class EnergyFormula(OwnFormula):
 
     def __init__(self, law: Any, depth: Array, initial: Array, label: str) -> None:
         super().__init__(law, depth, initial, label)
-        arguments = asked_of_user(lambda: len(inspect.signature(law.psi).parameters))
+        arguments = call_user_code(lambda: len(inspect.signature(law.psi).parameters))
         if arguments not in (1, 2):
             raise LawError("psi must take the strain, or strain and depth: psi(self, eps) or psi(self, eps, depth)")
         psi = law.psi if arguments == 2 else lambda eps, depth: law.psi(eps)
-        self._energy = asked_of_user(lambda: energy_kernel.EnergyKernel(psi, depth))
+        self._energy = call_user_code(lambda: energy_kernel.EnergyKernel(psi, depth))
         _, stress, moduli = self._energy.at(np.zeros((len(depth), 6)))
         if depth.size and not np.abs(stress).max() <= ZERO_STRESS * np.abs(moduli).max():
             raise LawError(f"psi has a stress of {np.abs(stress).max():.4g} Pa where there is no strain; it must be 0")

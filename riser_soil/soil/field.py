@@ -38,19 +38,21 @@ class SoilField:
         self.global_index: IntArray = components(nodes.number[twins])
         own = (twins == np.arange(len(twins))) & (np.arange(len(twins)) < nodes.owned)
         self.owned: BoolArray = np.repeat(own, 3)
-        self.prescribed: BoolArray = grid.supported(nodes.points).ravel()
-        self._ways_held = {True: self.prescribed, False: grid.supported(nodes.points, by_boundary=False).ravel()}
+        self._fixed_dofs: dict[bool, BoolArray] = {  # by whether the boundary is fixed
+            boundary: grid.fixed_directions(nodes.points, boundary).ravel() for boundary in (True, False)
+        }
+        self.prescribed: BoolArray = self._fixed_dofs[True]
         self.section = None if grid.section is None else np.repeat(grid.section, 3)
         self.total: Array = np.zeros(self.size)
 
-    def hold(self, by_boundary: bool) -> None:
-        """Let bottom and sides hold what they hold by default, or nothing."""
-        self.prescribed = self._ways_held[by_boundary]
+    def fix_boundary(self, fixed: bool) -> None:
+        """Fix bottom and sides as by default, or let them move."""
+        self.prescribed = self._fixed_dofs[fixed]
 
     @property
-    def held_by_boundary(self) -> BoolArray:
-        """Entries that bottom and sides alone can hold."""
-        return np.asarray(self._ways_held[True] & ~self._ways_held[False])
+    def boundary_dofs(self) -> BoolArray:
+        """Which dofs (size,) only a fixed boundary fixes."""
+        return np.asarray(self._fixed_dofs[True] & ~self._fixed_dofs[False])
 
     def own(self, values: Array) -> Array:
         """The field's slice of a local array."""
@@ -120,7 +122,7 @@ def top_of(grid: DistributedMesh, mesh: GatheredMesh, moves: bool) -> SoilTop:
 
 def views(grid: DistributedMesh, mesh: GatheredMesh, nodes: IntArray) -> tuple[IntArray, Array, BoolArray]:
     """Dofs of nodes (n,) of all, three each: number, sign, and whether they are supported."""
-    unfolding, supported = mesh.unfolding, grid.supported(mesh.points[nodes])
+    unfolding, supported = mesh.unfolding, grid.fixed_directions(mesh.points[nodes])
     return components(unfolding.source[nodes]), unfolding.sign[nodes].ravel(), supported.ravel()
 
 

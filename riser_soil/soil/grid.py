@@ -42,13 +42,13 @@ class DistributedMesh:
     mirror: Mirror | None = None
     section: IntArray | None = None
 
-    def supported(self, points: Array, by_boundary: bool = True) -> BoolArray:
-        """Held directions (n, 3) of points: all on the bottom, the normal one on the box' sides, in the mirror and of
-        plane cells. by_boundary: whether bottom and sides hold anything.
+    def fixed_directions(self, points: Array, boundary: bool = True) -> BoolArray:
+        """Directions (n, 3) in which points don't move: all on the bottom, the normal one on the box' sides, in the
+        mirror and of plane cells. boundary: whether bottom and sides are fixed.
         """
         near = 1e-6 * float(np.max(self.high - self.low))
-        at_side = ((points < self.low + near) | (points > self.high - near)) & by_boundary
-        bottom = (points[:, 2] < self.low[2] + near) & by_boundary
+        at_side = ((points < self.low + near) | (points > self.high - near)) & boundary
+        bottom = (points[:, 2] < self.low[2] + near) & boundary
         prescribed: BoolArray = np.column_stack((at_side[:, 0] | bottom, at_side[:, 1] | bottom, bottom))
         prescribed[:, [axis for axis in range(3) if axis not in self.family.axes]] = True
         if self.mirror is not None:

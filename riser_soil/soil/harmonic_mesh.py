@@ -88,7 +88,7 @@ class HarmonicMesh:
     def of(cls, grid: DistributedMesh, mesh: GatheredMesh, top: SoilTop) -> HarmonicMesh:
         """The mesh motion of a whole mesh, gathered, and its top."""
         facets = (top.global_index[::3] // 3)[top.facets]
-        return cls(grid.family, mesh.points, mesh.cells, facets, grid.supported(mesh.points))
+        return cls(grid.family, mesh.points, mesh.cells, facets, grid.fixed_directions(mesh.points))
 
     def renewed(self, points: Array, worn: BoolArray, pipe: Pressing) -> tuple[Array, BoolArray]:
         """All nodes (n, 3), and which of them (n,) go to new places: those of cells with worn ones (n,); none where a
@@ -146,9 +146,9 @@ class Facets:
         kind = TRI6 if nodes.shape[1] == 6 else QUAD
         return cls(kind, nodes, _cut(nodes, kind.triangles))
 
-    def located(self, asked: Array, images: Array) -> tuple[IntArray, Array]:
-        """Facets (n,) and places (n, 2) on them that nodes' images (np, 2) map to places (n, 2)."""
-        number, shares = _located(asked, images, self.triangles)
+    def located(self, points: Array, images: Array) -> tuple[IntArray, Array]:
+        """Facets (n,) and places (n, 2) on them of points (n, 2), among the nodes' images (np, 2)."""
+        number, shares = _located(points, images, self.triangles)
         facet, piece = np.divmod(number, len(self.kind.triangles))
         corners = self.kind.places[np.array(self.kind.triangles)[piece]]
         return facet, np.asarray(np.einsum("nk,nki->ni", shares, corners))
@@ -205,10 +205,10 @@ def _harmonic(at: Array, values: Array, pieces: IntArray, free: BoolArray) -> Ar
     out = values.copy()
     stiffness = _laplacian(at, pieces)
     for k in range(values.shape[1]):
-        asked, rest = np.flatnonzero(free[:, k]), np.flatnonzero(~free[:, k])
-        if len(asked):
-            rows = stiffness[asked]
-            out[asked, k] = splu(rows[:, asked].tocsc()).solve(-rows[:, rest] @ values[rest, k])
+        unknown, given = np.flatnonzero(free[:, k]), np.flatnonzero(~free[:, k])
+        if len(unknown):
+            rows = stiffness[unknown]
+            out[unknown, k] = splu(rows[:, unknown].tocsc()).solve(-rows[:, given] @ values[given, k])
     return out
 
 
@@ -227,18 +227,18 @@ def _laplacian(at: Array, pieces: IntArray) -> csr_matrix:
     return csr_matrix((values, (rows.ravel(), columns.ravel())), shape=(len(at), len(at)))
 
 
-def _located(asked: Array, images: Array, pieces: IntArray) -> tuple[IntArray, Array]:
-    """Simplices (n,) of nodes at images (np, d) that hold places (n, d) most deeply, and barycentric coordinates."""
+def _located(points: Array, images: Array, pieces: IntArray) -> tuple[IntArray, Array]:
+    """Simplices (n,) of nodes at images (np, d) that points (n, d) lie in most deeply, and barycentric coordinates."""
     corners = images[pieces]
     middle = corners.mean(axis=1)
     radius = np.linalg.norm(corners - middle[:, None], axis=2).max(axis=1)
-    near = cKDTree(asked).query_ball_point(middle, BESIDE * radius)
+    near = cKDTree(points).query_ball_point(middle, BESIDE * radius)
     simplex, place = np.repeat(np.arange(len(pieces)), [len(group) for group in near]), np.concatenate(near).astype(int)
-    simplex, place = np.append(simplex, cKDTree(middle).query(asked)[1]), np.append(place, np.arange(len(asked)))
+    simplex, place = np.append(simplex, cKDTree(middle).query(points)[1]), np.append(place, np.arange(len(points)))
     edges = np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
     flat = np.abs(np.linalg.det(edges)) <= FLAT * radius ** edges.shape[1]
     inverse = np.linalg.inv(np.where(flat[:, None, None], np.eye(edges.shape[1]), edges))
-    inner = np.einsum("nij,nj->ni", inverse[simplex], asked[place] - corners[simplex, 0])
+    inner = np.einsum("nij,nj->ni", inverse[simplex], points[place] - corners[simplex, 0])
     shares = np.column_stack([1.0 - inner.sum(axis=1), inner])
     depth = np.where(flat[simplex], -np.inf, shares.min(axis=1))
     _, deepest = np.unique(place[order := np.lexsort((-depth, place))], return_index=True)

@@ -7,14 +7,14 @@ from typing import Any
 
 from riser_soil.core.arrays import Array
 from riser_soil.soil.law_source import LawError
-from riser_soil.soil.own_formula import ConstitutiveFormula, OwnFormula, UpdateFormula, asked_of_user
+from riser_soil.soil.own_formula import ConstitutiveFormula, OwnFormula, UpdateFormula, call_user_code
 
 METHODS = ("update", "evaluate", "psi")
 
 
 def formula_of(make: Callable[[], Any], depth: Array, initial: Array, label: str) -> OwnFormula:
     """The formula of the object that `make` makes, at depths (n,) [m] under a stress (n, 6) [Pa]; LawError."""
-    law = asked_of_user(make)
+    law = call_user_code(make)
     methods = [name for name in METHODS if callable(getattr(law, name, None))]
     if len(methods) != 1:
         has = f"has {' and '.join(methods)}" if methods else "has none"

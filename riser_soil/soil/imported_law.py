@@ -14,7 +14,7 @@ from riser_soil.core.lazy import LazyModule
 from riser_soil.core.quantities import FROZEN
 from riser_soil.errors import SceneError
 from riser_soil.soil.law import PORE_PRESSURE, Formula, SoilLaw
-from riser_soil.soil.law_source import LawError, Source, arguments, asked
+from riser_soil.soil.law_source import LawError, Source, accepted_by, arguments
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -78,7 +78,7 @@ class ImportedLaw(SoilLaw):
 
     def _made(self, depth: Array, initial: Array) -> OwnFormula:
         law = self.from_.loaded
-        given = arguments(law, self._given) | asked(law, {"depth": depth, "initial": initial})
+        given = arguments(law, self._given) | accepted_by(law, {"depth": depth, "initial": initial})
         return imported_formula.formula_of(lambda: law(**given), depth, initial, f"{self._key}: {self.from_.label}")
 
     def _try(self, depth: Array, initial: Array) -> None:

@@ -4,7 +4,7 @@ Soil and its pore water move as one: undrained. The mass is consistent, of one d
 soil goes on; waves that arrive square to its sides or bottom are not thrown back by dashpots of the impedance rho c_p
 along the normal and rho c_s along the side (J. Lysmer & R. L. Kuhlemeyer, Finite dynamic model for infinite media,
 Journal of the Engineering Mechanics Division 95, 1969), with the speeds of waves of the elastic moduli. While they act
-nothing else holds the sides and the bottom: the forces that have held them at rest stay as they were.
+sides and bottom are not fixed: their reactions at rest go on acting as constant forces.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class SoilInertia:
 
 
 class SoilBoundary:
-    """Part "soil boundary": dashpots on sides and bottom, and the forces that hold them at rest, in group F.
+    """Part "soil boundary": dashpots on sides and bottom, and their reactions at rest, in group F.
 
     density (nc,): of this rank's cells [kg/m3]; their moduli are the law's elastic ones.
     """
@@ -93,30 +93,30 @@ class SoilBoundary:
         impedances = np.sqrt(rho[:, None] * np.stack([bulk + 4.0 / 3.0 * shear, shear], axis=1))
         dofs = components(soil.cells.nodes[facets[:, 0]], grid.family.axes)
         self.damping = CellMatrices(soil.cells.dashpots(facets, impedances), dofs)
-        self._released = soil.field.held_by_boundary
-        self._held, self._done = np.zeros(soil.field.size), 0.0
+        self._boundary_dofs = soil.field.boundary_dofs
+        self._reaction, self._work_done = np.zeros(soil.field.size), 0.0  # of the fixed boundary
 
     def blocks(self) -> dict[str, MatrixBlock]:
         rows = self._soil.field.offset + self.damping.dofs
         return {self.name: MatrixBlock(rows, rows)}
 
     def begin_stage(self, state: State) -> None:
-        """The forces that hold the boundary now act on it from now on."""
+        """From now on the boundary's present reactions act on it as constant forces."""
         forces = Forces.zeros(len(state.u))
         self._soil.residual(State.at_rest(state.t, len(state.u)), forces)
-        self._held = np.where(self._released, self._soil.field.own(forces.force), 0.0)
-        self._done = 0.0
+        self._reaction = np.where(self._boundary_dofs, self._soil.field.own(forces.force), 0.0)
+        self._work_done = 0.0
 
     def residual(self, state: State, forces: Forces) -> None:
         field = self._soil.field
-        field.own(forces.force)[:] += self.damping.times(field.own(state.v)) - self._held
+        field.own(forces.force)[:] += self.damping.times(field.own(state.v)) - self._reaction
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         values[self.name] += weights.force * weights.shift_v * self.damping.matrices
 
     def energy(self, state: State) -> Energy:
-        """Potential of the forces that hold the boundary."""
-        return Energy(potential=-self._done - float(self._held @ self._soil.field.own(state.u)))
+        """Potential of the constant boundary forces."""
+        return Energy(potential=-self._work_done - float(self._reaction @ self._soil.field.own(state.u)))
 
     def work(self, before: State, after: State) -> Work:
         """Work of the dashpots: their mean force over the step."""
@@ -124,13 +124,13 @@ class SoilBoundary:
         return Work(dissipated=0.5 * self.damping.product(own(after.u), own(before.v) + own(after.v)))
 
     def commit(self, state: State) -> None:
-        self._done += float(self._held @ self._soil.field.own(state.u))
+        self._work_done += float(self._reaction @ self._soil.field.own(state.u))
 
     def state(self) -> Saved:
-        return {"held": self._held.copy(), "done": np.array(self._done)}
+        return {"held": self._reaction.copy(), "done": np.array(self._work_done)}
 
     def restore(self, saved: Saved) -> None:
-        self._held, self._done = saved["held"].copy(), float(saved["done"])
+        self._reaction, self._work_done = saved["held"].copy(), float(saved["done"])
 
 
 def outer_facets(grid: DistributedMesh, nodes: IntArray, boundary: str = "") -> IntArray:

@@ -107,17 +107,17 @@ def return_elements(
     """
     for n in range(shrink.shape[0]):
         for k in range(shrink.shape[1]):
-            w, left, square = weights[n, k], shrink[n, k], 0.0
+            w, share, square = weights[n, k], shrink[n, k], 0.0
             trial = s[n, 6 * k : 6 * k + 6]
             if w != 0.0:
                 for i in range(6):
                     for j in range(6):
                         C[n, i, j] -= w * trial[i] * trial[j]
             for i in range(6):
-                stays = left * trial[i]
-                trial[i] = stays
-                sums[n, i] += stays
-                square += stays**2
+                deviator = share * trial[i]
+                trial[i] = deviator
+                sums[n, i] += deviator
+                square += deviator**2
             energy[n] += 0.25 / moduli[n, k] * square
 
 

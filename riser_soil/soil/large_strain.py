@@ -30,7 +30,7 @@ SHEAR = 1.0 / np.sqrt(2.0)  # of a component in Mandel's notation
 SLOPE = ("slope_x", "slope_y", "slope_z")
 FIRST, LAST = STRESS[0][-3:], STRESS[-1][-3:]  # "_xx", "_yz"
 APART = 10.0  # largest extent of the soil, by which sections are moved apart
-Take = Callable[[Array, Array, Array], tuple[Array, ...]]  # of places, rows there, and places asked for
+Sample = Callable[[Array, Array, Array], tuple[Array, ...]]  # of places, rows there, and targets
 
 
 def moved_on(cells: SoilCells, points: Array, u: Array, law: Formula, history: Array, dt: float) -> StressUpdate:
@@ -95,11 +95,11 @@ def nearest_rows(
     """
     mirror = grid.mirror
     if mirror is None:
-        values, way = _taken(grid, _nearest, before, after, rows)
+        values, way = _sampled(grid, _nearest, before, after, rows)
         return values, way
     behind = mirror.behind(after)
-    asked = np.where(behind[:, None], mirror.images(after), after)
-    values, way = _taken(grid, _nearest, before, asked, rows)
+    targets = np.where(behind[:, None], mirror.images(after), after)
+    values, way = _sampled(grid, _nearest, before, targets, rows)
     values[behind] *= mirror.turned(columns)
     way[behind] *= mirror.signs
     return values, way
@@ -115,28 +115,28 @@ def carried_rows(grid: DistributedMesh, before: Array, after: Array, rows: Array
         before, rows = before[beyond], rows[beyond]
         before = np.concatenate([before, mirror.images(before)])
         rows = np.concatenate([rows, rows * mirror.turned(columns)])
-    return _taken(grid, _carried, before, after, rows)[0]
+    return _sampled(grid, _carried, before, after, rows)[0]
 
 
-def _carried(places: Array, values: Array, asked: Array) -> tuple[Array]:
-    return (carried(places, values, asked),)
+def _carried(places: Array, values: Array, targets: Array) -> tuple[Array]:
+    return (carried(places, values, targets),)
 
 
-def _nearest(places: Array, values: Array, asked: Array) -> tuple[Array, Array]:
+def _nearest(places: Array, values: Array, targets: Array) -> tuple[Array, Array]:
     """Rows of the points nearest to places (n, 3), and the ways from there."""
-    number: IntArray = cKDTree(places).query(asked)[1]
-    return values[number], asked - places[number]
+    number: IntArray = cKDTree(places).query(targets)[1]
+    return values[number], targets - places[number]
 
 
-def _taken(grid: DistributedMesh, take: Take, before: Array, after: Array, rows: Array) -> tuple[Array, ...]:
-    """This rank's share of what is taken, at the places after of all ranks, from the rows of all; collective. Sections
-    take nothing from each other, and each is one rank's.
+def _sampled(grid: DistributedMesh, sample: Sample, before: Array, after: Array, rows: Array) -> tuple[Array, ...]:
+    """This rank's share of the samples of all ranks' rows at all ranks' places after; collective. Sections don't sample
+    each other, and each is one rank's.
     """
     if grid.family.plane:
-        return take(_apart(grid, before), rows, _apart(grid, after))
+        return sample(_apart(grid, before), rows, _apart(grid, after))
     comm = grid.nodes.comm
     gathered = comm.gather((before, rows, after))
-    mine: tuple[Array, ...] = comm.scatter([] if gathered is None else _split(gathered, take))
+    mine: tuple[Array, ...] = comm.scatter([] if gathered is None else _split(gathered, sample))
     return mine
 
 
@@ -147,11 +147,11 @@ def _apart(grid: DistributedMesh, points: Array) -> Array:
     return out
 
 
-def _split(gathered: list[tuple[Array, Array, Array]], take: Take) -> list[tuple[Array, ...]]:
+def _split(gathered: list[tuple[Array, Array, Array]], sample: Sample) -> list[tuple[Array, ...]]:
     """What each rank gets."""
-    places, values, asked = (np.concatenate(each) for each in zip(*gathered, strict=True))
+    places, values, targets = (np.concatenate(each) for each in zip(*gathered, strict=True))
     ends = np.cumsum([len(after) for _, _, after in gathered])[:-1]
-    return list(zip(*(np.split(column, ends) for column in take(places, values, asked)), strict=True))
+    return list(zip(*(np.split(column, ends) for column in sample(places, values, targets)), strict=True))
 
 
 def carried_depths(
@@ -161,9 +161,9 @@ def carried_depths(
     [m]. Collective.
     """
     moved = (np.abs(after - before).max(axis=1) > none) & (depth > 0.0)
-    asked, own = after[moved], slice(grid.nodes.owned)
-    slope, _ = nearest_rows(grid, cells.at_points(before), asked, cells.slopes(depth), SLOPE)
-    there, way = nearest_rows(grid, before[own], asked, depth[own, None], ("depth",))
+    targets, own = after[moved], slice(grid.nodes.owned)
+    slope, _ = nearest_rows(grid, cells.at_points(before), targets, cells.slopes(depth), SLOPE)
+    there, way = nearest_rows(grid, before[own], targets, depth[own, None], ("depth",))
     out = depth.copy()
     out[moved] = np.maximum(there[:, 0] + np.einsum("ni,ni->n", slope, way), 0.0)
     return out

@@ -182,8 +182,8 @@ def arguments(law: type[Any], given: Mapping[str, Any]) -> dict[str, Any]:
     return {key: _as_member(key, value, hints.get(key)) for key, value in given.items()}
 
 
-def asked(law: type[Any], values: Mapping[str, Any]) -> dict[str, Any]:
-    """The program's values that the constructor asks for."""
+def accepted_by(law: type[Any], values: Mapping[str, Any]) -> dict[str, Any]:
+    """Those of the program's values that are parameters of a law's constructor."""
     known = _parameters(law) or {}
     return {key: value for key, value in values.items() if key in known}
 

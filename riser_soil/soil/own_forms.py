@@ -165,14 +165,14 @@ def _inverse(dt: float) -> float:
 def integrals_of(soil: Soil, file: Path) -> Iterator[Integral]:
     """The terms of a file, compiled."""
     terms = Terms(soil)
-    form = _asked(file, lambda: _checked(run_file(file).residual(terms)))
+    form = _call_user_code(file, lambda: _checked(run_file(file).residual(terms)))
     for integral in form.integrals():
         boundary = None if integral.integral_type() == "cell" else BOUNDARIES[_number(integral)]
         yield _integral(file, terms, _alone(integral, terms.degree), boundary)
 
 
 def _integral(file: Path, terms: Terms, form: Any, boundary: str | None) -> Integral:
-    slopes = _asked(file, lambda: [_slope(form, terms, number) for number in (U, VELOCITY)])
+    slopes = _call_user_code(file, lambda: [_slope(form, terms, number) for number in (U, VELOCITY)])
     kernels = {number: _compiled(file, slope) for number, slope in enumerate(slopes) if slope is not None}
     return Integral(boundary, _compiled(file, form), kernels)
 
@@ -227,13 +227,13 @@ def _slope(form: Any, terms: Terms, number: int) -> Any:
 
 def _compiled(file: Path, form: Any) -> tuple[Any, tuple[int, ...]]:
     kernel = cell_kernel if form.integrals()[0].integral_type() == "cell" else facet_kernel
-    return _asked(file, lambda: kernel(form)), tuple(each.count() for each in form.coefficients())
+    return _call_user_code(file, lambda: kernel(form)), tuple(each.count() for each in form.coefficients())
 
 
-def _asked(file: Path, ask: Callable[[], Any]) -> Any:
-    """Values of the user's terms; SceneError where they fail."""
+def _call_user_code(file: Path, call: Callable[[], Any]) -> Any:
+    """Return value of user code; SceneError, with its file, where it fails."""
     try:
-        return ask()
+        return call()
     except SceneError:
         raise
     except (Exception, ArityMismatch, SystemExit) as err:

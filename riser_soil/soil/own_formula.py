@@ -35,8 +35,8 @@ PROBE = 1e-6  # strain
 _WARNED = WeakSet[type]()  # classes of which a failure has been reported
 
 
-def asked_of_user(call: Callable[[], Any]) -> Any:
-    """What the user's code returns; LawError, with its place, where it fails."""
+def call_user_code(call: Callable[[], Any]) -> Any:
+    """Return value of user code; LawError, with its place, where it fails."""
     try:
         return call()
     except LawError:
@@ -117,7 +117,7 @@ class OwnFormula(ABC):
         own = getattr(self.law, "overstress", None)
         if own is None:
             return np.zeros(len(stress))
-        return as_array(asked_of_user(lambda: own(stress)), (len(stress),), "overstress")
+        return as_array(call_user_code(lambda: own(stress)), (len(stress),), "overstress")
 
 
 def infinite(depth: float, increment: Array) -> str:
@@ -155,10 +155,10 @@ class UpdateFormula(OwnFormula):
         own = getattr(self.law, "start", None)
         if own is None:
             return super().start()
-        return as_array(asked_of_user(own), (len(self.depth), len(self.columns)), "start()")
+        return as_array(call_user_code(own), (len(self.depth), len(self.columns)), "start()")
 
     def answer(self, increment: Array, history: Array, dt: float) -> Sequence[Array]:
-        answer = asked_of_user(lambda: self.law.update(increment, history, dt))
+        answer = call_user_code(lambda: self.law.update(increment, history, dt))
         if not isinstance(answer, tuple | list) or len(answer) not in (3, 5):
             what = "stress, tangent, history, and may return stored and elastic behind them"
             raise LawError(f"update must return {what}, and returns {_kind(answer)}")
@@ -197,10 +197,10 @@ class ConstitutiveFormula(OwnFormula):
 
     def __init__(self, law: Any, depth: Array, initial: Array, label: str) -> None:
         super().__init__(law, depth, initial, label)
-        dimensions = asked_of_user(lambda: getattr(law, "history_dim", None))
+        dimensions = call_user_code(lambda: getattr(law, "history_dim", None))
         self._sizes = {key: _size_of(key, size) for key, size in (dimensions or {}).items()}
         self.columns = _checked_columns((*STRESS, *(n for key, size in self._sizes.items() for n in _names(key, size))))
-        full = asked_of_user(lambda: getattr(law, "stress_strain_dim", 6))
+        full = call_user_code(lambda: getattr(law, "stress_strain_dim", 6))
         if full != 6:
             raise LawError(f"its constraint has {full} components of stress, and must be FULL, which has six")
 
@@ -220,15 +220,16 @@ class ConstitutiveFormula(OwnFormula):
     def _evaluated(self, increment: Array, history: Array, dt: float, order: list[int]) -> Sequence[Array]:
         n, first = len(increment), 6
         stress, tangent = history[:, :6][:, order].ravel(), np.zeros(36 * n)
-        kept = dict[str, Array]()
+        histories = dict[str, Array]()
         for key, size in self._sizes.items():
             values = history[:, first : first + size]
-            kept[key], first = (values[:, order] if size == 6 else values).ravel(), first + size
+            histories[key], first = (values[:, order] if size == 6 else values).ravel(), first + size
         gradient = (increment[:, [0, 3, 4, 3, 1, 5, 4, 5, 2]] * _GRADIENT).ravel()
-        asked_of_user(lambda: self.law.evaluate(0.0, dt, gradient, stress, tangent, kept if self._sizes else None))
+        history_of_law = histories if self._sizes else None
+        call_user_code(lambda: self.law.evaluate(0.0, dt, gradient, stress, tangent, history_of_law))
         after = [stress.reshape(n, 6)[:, order]]
         for key, size in self._sizes.items():
-            values = as_array(kept.get(key), (n * size,), f"history {key}").reshape(n, size)
+            values = as_array(histories.get(key), (n * size,), f"history {key}").reshape(n, size)
             after.append(values[:, order] if size == 6 else values)
         return after[0], np.ascontiguousarray(tangent.reshape(n, 6, 6)[:, order][:, :, order]), np.column_stack(after)
 

@@ -29,7 +29,7 @@ class MeshQuality:
     poor: int
 
 
-POOR = 0.1  # scaled Jacobian below which a cell is told of
+POOR = 0.1  # scaled Jacobian below which a warning names the cell
 
 
 def quality_of(grid: DistributedMesh) -> MeshQuality:

@@ -60,7 +60,7 @@ class Return(NamedTuple):
     the trial's shape, and are 1 where nothing yields.
     """
 
-    left: Array
+    shrink: Array
     slope: Array
 
 
@@ -88,14 +88,14 @@ class Gain(NamedTuple):
 
     def radial_return(self, q: Array, limit: Array, stiff: Array) -> Return:
         """Return of elastic trials q [Pa] to a limit of slow shear [Pa], with stiff = 3G [Pa]; all of one shape."""
-        left = limit / np.maximum(q, limit)
-        slope = np.where(left < 1.0, 0.0, 1.0)
+        shrink = limit / np.maximum(q, limit)
+        slope = np.where(shrink < 1.0, 0.0, 1.0)
         fast = q - limit > stiff * self.slow
         if fast.any():
             trial, most, resistance = q[fast], limit[fast], stiff[fast]
             fall = resistance * self.slip(trial, most, resistance)
-            left[fast], slope[fast] = 1.0 - fall / trial, self.by_e * most / (self.by_e * most + fall)
-        return Return(left, slope)
+            shrink[fast], slope[fast] = 1.0 - fall / trial, self.by_e * most / (self.by_e * most + fall)
+        return Return(shrink, slope)
 
 
 STEADY = Gain(0.0, math.inf)

@@ -101,7 +101,7 @@ class Sections:
         return smoothed(at, self.columns, self.layers, self.across)
 
     def skewness(self, at: Array) -> float:
-        """Least of a section's cells with nodes at (nc, nl, 3), see `families.skewness`."""
+        """Least of the skewness of a section's cells (1 for bricks, 0 as one folds), with nodes at (nc, nl, 3)."""
         cells = grid_cells(*at.shape[:2])
         return float(skewness(CELLS[self.across], at.reshape(-1, 3), cells).min())
 

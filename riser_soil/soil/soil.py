@@ -16,13 +16,13 @@ from riser_soil.core.saved_state import Saved, Stateful, within
 from riser_soil.core.snapshot import SoilMesh, SoilSnapshot
 from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil import kernels, mandel
-from riser_soil.soil.asked_fields import NO_FIELDS, AskedFields
 from riser_soil.soil.families import FOLDS, skewness
 from riser_soil.soil.field import GatheredMesh, SoilField, components, gather, gather_rows, top_of
 from riser_soil.soil.grid import DistributedMesh, on_all_ranks
 from riser_soil.soil.large_strain import carried_depths, carried_rows, moved_on
 from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Formula, StressUpdate
 from riser_soil.soil.layered import LayeredWeight
+from riser_soil.soil.requested_fields import NO_FIELDS, RequestedFields
 from riser_soil.soil.slices import slabs, top_of_slices
 from riser_soil.soil.soil_cells import SoilCells
 
@@ -57,7 +57,7 @@ class Soil:
         start: Literal["geostatic", "unstressed"] = "geostatic",
         moves: bool = False,
         inertia: bool = False,
-        fields: AskedFields = NO_FIELDS,
+        fields: RequestedFields = NO_FIELDS,
     ) -> None:
         _check_level(grid, level)
         self.grid, self.moves, self._has_inertia = grid, moves, inertia
@@ -66,21 +66,21 @@ class Soil:
         self.surface = (top_of_slices if grid.family.plane else top_of)(grid, self.mesh, moves)
         self.cells = SoilCells(grid)
         weight = LayeredWeight((), (unit_weight,)) if isinstance(unit_weight, int | float) else unit_weight
-        self._ground = _Ground(fields.kept_by(law), weight, K0, start == "geostatic")
+        self._ground = _Ground(fields.with_histories(law), weight, K0, start == "geostatic")
         depth, self._zero_depth = level - grid.nodes.points[:, 2], ZERO_DEPTH * float(grid.high[2] - grid.low[2])
         self._depth = np.where(depth > self._zero_depth, depth, 0.0)  # of the nodes, before anything moved
         self._initial, self._unit_weight, self.law = on_all_ranks(grid.nodes.comm, self._material)
         roles = Limited, Stateful, UpdatedLagrangian, Yielding
         self.traits = Traits("F" if inertia else "E", self.law.symmetric, roles=roles)
-        self._asked = fields.of_law(self.law.columns)
+        self._requested = fields.of_law(self.law.columns)
         _check_start(grid, self.law, self._initial, self.cells.at_points(self._depth), K0)
         self._law_state = _at_rest(self.law, self._initial)
-        self._in_balance = self._law_state.stress  # of the last step, before the law is asked again for moved cells
+        self._in_balance = self._law_state.stress  # of the last step, before the law is evaluated again for moved cells
         self._last: _Answer | None = None
         self._elastic_share = 0.0
         self._volumes: Array = self.cells.volumes.flatten()
         self._load = self._internal(self._initial) if start == "geostatic" else self._weight()
-        self._held = self._load - self._weight()  # on the sides, and in place of what has been dug out
+        self._initial_reaction = self._load - self._weight()  # at sides and bottom, and of soil that is dug out
         self._mesh_at = self.cells.made_at.copy() if moves else np.empty(0)  # (nc, nn, 3): nodes of cells when made
         self._stored = self._lifted = 0.0
         self._cells_ahead = False  # whether the cells lie elsewhere than accepted, see `place`
@@ -101,10 +101,10 @@ class Soil:
     def residual(self, state: State, forces: Forces) -> None:
         self.field.own(forces.force if self._has_inertia else forces.end)[:] += self._answer(state).force
 
-    def hold(self, by_boundary: bool) -> None:
-        """Let bottom and sides hold what they hold by default, or nothing; in systems that are made."""
-        self.field.hold(by_boundary)
-        self.surface.prescribed = self.grid.supported(self.surface.points, by_boundary).ravel()
+    def fix_boundary(self, fixed: bool) -> None:
+        """Fix bottom and sides as by default, or let them move; in systems that are made from then on."""
+        self.field.fix_boundary(fixed)
+        self.surface.prescribed = self.grid.fixed_directions(self.surface.points, fixed).ravel()
 
     def mean_by_depth(self, of_depth: Callable[[Array], Array]) -> Array:
         """Means (nc,) in the cells of values by depth (n,) [m]."""
@@ -179,7 +179,7 @@ class Soil:
         self._cells_ahead = False
         update = moved_on(self.cells, self.points, u, self.law, self._law_state.history, dt)
         self.cells.renew(self.points + u.reshape(-1, 3))
-        self._load = self._held + self._weight()
+        self._load = self._initial_reaction + self._weight()
         return update
 
     def place(self, state: State) -> None:
@@ -193,7 +193,7 @@ class Soil:
         if self._cells_ahead or u.any():
             self._cells_ahead = bool(u.any())
             self.cells.renew(self.points + u.reshape(-1, 3))
-            self._load, self._last = self._held + self._weight(), None
+            self._load, self._last = self._initial_reaction + self._weight(), None
 
     def lag(self, state: State) -> float:
         """Largest change of a facet's area from where the surface is placed to a state, as a share of it."""
@@ -256,10 +256,10 @@ class Soil:
         self.cells.make_anew(np.flatnonzero(new), self._mesh_at[new])
         self._volumes[new_points] = self.cells.volumes.ravel()[new_points]
         self._take_material()
-        self._load, self._last = self._held + self._weight(), None
+        self._load, self._last = self._initial_reaction + self._weight(), None
         update = self.law.update(np.zeros((len(history), 6)), self._balanced(history), dt=0.0)
-        for now, kept in zip(update, self._law_state._replace(tangent=update.tangent), strict=True):
-            now[~new_points] = kept[~new_points]
+        for after_move, before_move in zip(update, self._law_state._replace(tangent=update.tangent), strict=True):
+            after_move[~new_points] = before_move[~new_points]
         self._law_state = update._replace(tangent=np.empty(0))
 
     def _history_beyond_weight(self, points: Array) -> Array:
@@ -296,9 +296,9 @@ class Soil:
         all_of = self.mesh.unfolding
         moved = all_of.vectors(gather_rows(self.grid, owned))
         mean, mises, used, plastic = (self._mean_of_all(values) for values in self._invariants())
-        asked = self._asked.at_points(self._in_balance, self._law_state)
+        requested = self._requested.at_points(self._in_balance, self._law_state)
         displacement = np.concatenate([moved, moved]) if self.grid.family.plane else moved
-        of_cells = {name: self._mean_of_all(values) for name, values in asked}
+        of_cells = {name: self._mean_of_all(values) for name, values in requested}
         return SoilSnapshot(displacement, mean, mises, used, plastic, of_cells)
 
     def _mean_of_all(self, values: Array) -> Array:
@@ -350,17 +350,18 @@ class Soil:
 
     def state(self) -> Saved:
         update, energy = self._law_state, np.array([self._stored, self._lifted])
-        kept = {"stress": update.stress, "history": update.history, "stored": update.stored, "elastic": update.elastic}
-        return {"law/" + name: values for name, values in kept.items()} | {"energy": energy} | self._moved
+        of_law = {"stress": update.stress, "history": update.history, "stored": update.stored}
+        of_law["elastic"] = update.elastic
+        return {"law/" + name: values for name, values in of_law.items()} | {"energy": energy} | self._moved
 
     @property
     def _moved(self) -> Saved:
         """Geometry of the gradients, and the last mesh, where cells move."""
         if not self.moves:
             return {}
-        kept = {"in_balance": self._in_balance, "made_at": self.cells.made_at, "mesh_at": self._mesh_at}
-        kept |= {"depth": self._depth, "volumes": self._volumes}
-        return {name: values.copy() for name, values in kept.items()}
+        arrays = {"in_balance": self._in_balance, "made_at": self.cells.made_at, "mesh_at": self._mesh_at}
+        arrays |= {"depth": self._depth, "volumes": self._volumes}
+        return {name: values.copy() for name, values in arrays.items()}
 
     def restore(self, saved: Saved) -> None:
         self._law_state, self._last = self._law_state._replace(**within(saved, "law")), None
@@ -372,7 +373,7 @@ class Soil:
             self._in_balance = saved["in_balance"].copy()
             self._mesh_at = saved["mesh_at"].copy()
             self._take_material()
-            self._load = self._held + self._weight()
+            self._load = self._initial_reaction + self._weight()
 
 
 class _Answer(NamedTuple):

@@ -59,8 +59,8 @@ class SoilCells:
         """Place some cells anew, with their nodes at (n, nn, 3)."""
         self.made_at[cells] = at
         self.volumes[cells] = self._volumes_of(at, cells)
-        for kept, made in zip(self._placed, self._placed_at(at), strict=True):
-            kept[cells] = made
+        for all_cells, these in zip(self._placed, self._placed_at(at), strict=True):
+            all_cells[cells] = these
         if self._stiffness is not None:
             self._stiffness.moduli[cells] = np.nan
 

@@ -103,8 +103,8 @@ class AutoSteps:
 
 def from_last_to_first(end: float, stops: Iterable[float]) -> list[float]:
     """The end and all stops before it, without those that all but meet one after them."""
-    kept = [end]
+    spaced = [end]
     for stop in sorted(stops, reverse=True):
-        if NEAR * end < stop < kept[-1] - NEAR * end:
-            kept.append(stop)
-    return kept
+        if NEAR * end < stop < spaced[-1] - NEAR * end:
+            spaced.append(stop)
+    return spaced

@@ -47,6 +47,6 @@ class BandLoop(Loop):
 
     def renew(self) -> None:
         """The lines' own pattern stays as it is, with whatever dofs are free."""
-        found = band_of(self._system)
-        assert found is not None
-        self._factors = found
+        factors = band_of(self._system)
+        assert factors is not None
+        self._factors = factors

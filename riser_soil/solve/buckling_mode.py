@@ -1,9 +1,9 @@
 """Buckling mode in which a riser leaves an unstable equilibrium.
 
 With the tangent K and the drag D of dynamic relaxation it is the mode of the most negative eigenvalue w of
-K m = w D m, the one that grows fastest. It is found by inverse iteration on K + s D, where s is the least power of two
-times any drag that makes this matrix positive definite: then w lies between -s and -s/2. The start vector is the same
-for all risers, and the largest displacement is positive, so that the direction does not depend on round-off.
+K m = w D m, the one that grows fastest. It is computed by inverse iteration on K + s D, where s is the least power of
+two times any drag that makes this matrix positive definite: then w lies between -s and -s/2. The start vector is the
+same for all risers, and the largest displacement is positive, so that the direction does not depend on round-off.
 """
 
 from __future__ import annotations
@@ -57,9 +57,9 @@ def buckling_mode(
     system.assemble(state, weights, parts)
     with _exact_solver(system) as solve:
         mode = _iterate(system, solve, drag, start)
-    found = np.zeros(system.numbering.size)
-    system.numbering.to_local(mode, found)
-    return np.asarray(found / _largest(np.concatenate([found[field.translation_dofs] for field in fields])))
+    increments = np.zeros(system.numbering.size)
+    system.numbering.to_local(mode, increments)
+    return np.asarray(increments / _largest(np.concatenate([increments[field.translation_dofs] for field in fields])))
 
 
 def _exact_solver(system: System) -> AbstractContextManager[Callable[[Array], Array]]:

@@ -22,9 +22,9 @@ STALLED = 0.5  # the norm of a residual that falls by less in each of two iterat
 class StopLimits(NamedTuple):
     """When to stop, see `NewtonSettings`.
 
-    reuse: an iteration that leaves less than this share of the residual leaves its tangent to the next, but contact's
-    share, which is found anew, as contact has corners. most, least: iterations; answers_load: whether a residual below
-    the floor counts as small before the first one.
+    reuse: an iteration that reduces the residual to less than this share leaves its tangent to the next, but contact's
+    part, which is made anew, as contact has corners. most, least: iterations; floor_at_start: whether a residual below
+    the floor counts as small before the first one, too.
     """
 
     tolerance: float
@@ -32,7 +32,7 @@ class StopLimits(NamedTuple):
     reuse: float
     most: int
     least: int
-    answers_load: bool
+    floor_at_start: bool
 
 
 class Convergence:
@@ -60,26 +60,26 @@ class Convergence:
     def ending(self, in_play: float, at_round_off: Callable[[], bool], small: bool | None = None) -> str:
         """How the method ends with the last residual, else ITERATING.
 
-        in_play: norm [N] of the forces in play; at_round_off: whether nothing in the residual can be told from its
+        in_play: norm [N] of the forces in play; at_round_off: whether all of the residual may be its
         round-off; small: whether the residual is small by a user's own tolerances, None where the limits decide.
         """
-        norm, taken, limits = self.norms[-1], len(self.norms) - 1, self.limits
+        norm, count, limits = self.norms[-1], len(self.norms) - 1, self.limits
         if not math.isfinite(norm):
             return NOT_FINITE
-        if taken >= limits.least:
+        if count >= limits.least:
             if small is None:
-                below_floor = norm <= limits.floor and (taken > 0 or limits.answers_load)
+                below_floor = norm <= limits.floor and (count > 0 or limits.floor_at_start)
                 small = below_floor or norm <= limits.tolerance * in_play
             if small or (stalled(self.norms) and at_round_off()):
                 return CONVERGED
-            if taken >= DIVERGES_AFTER and norm > DIVERGES * self.norms[self.first]:
+            if count >= DIVERGES_AFTER and norm > DIVERGES * self.norms[self.first]:
                 return DIVERGED
-        return ITERATING if taken < self.most else TOO_MANY
+        return ITERATING if count < self.most else TOO_MANY
 
     @property
     def keeps_tangent(self) -> bool:
-        """Whether the last iteration leaves its tangent, but contact's share, to the next: it has left little of the
-        residual's norm before, or little of it where nothing touches.
+        """Whether the next iteration reuses the tangent, but contact's share: the last one has reduced the residual's
+        norm to a small share, or that norm where nothing touches.
         """
         if len(self.norms) < 2:
             return False
@@ -89,7 +89,7 @@ class Convergence:
 
 
 def stalled(norms: list[float]) -> bool:
-    """Whether the last two iterations have left the residual's norm as it is, of all its norms so far."""
+    """Whether the last two iterations have hardly reduced the residual's norm. norms: all so far."""
     if len(norms) < 3:
         return False
     earlier, before, norm = norms[-3:]

@@ -130,7 +130,7 @@ def forward_eliminate(workspace: MatrixWorkspace, dofs: Dofs, border: Border, fa
 
 @njit
 def solve_border(border: Border, factors: Factors) -> None:
-    """Write what the factorised tangent answers in place of the border's residual, and take it off the soil's
+    """Solve the Schur complement for the border's residual, in place, and subtract the solution from the soil's
     increments.
     """
     dense.solve(factors.schur, factors.pivots, border.residual)
@@ -140,7 +140,7 @@ def solve_border(border: Border, factors: Factors) -> None:
 
 @njit
 def back_substitute(dofs: Dofs, border: Border, factors: Factors) -> None:
-    """Take what the border's answer does off a line's residual, and write that of its moved dofs there."""
+    """Subtract coupling times the border's solution from a line's residual; put the solution of moved dofs there."""
     rows, load = factors.rows[: factors.filled[0]], dofs.residual.reshape(dofs.residual.size)
     bordered.back_substitute(rows, border.right, border.residual, load)
     for k in factors.moved:

@@ -46,9 +46,9 @@ class BandSolver(PythonContext):
         """Factorise the present matrix, called by PETSc; SingularError where it can't be."""
         self._band.factorise()
 
-    def apply(self, pc: PETSc.PC, load: PETSc.Vec, found: PETSc.Vec) -> None:
+    def apply(self, pc: PETSc.PC, load: PETSc.Vec, solution: PETSc.Vec) -> None:
         """Solve, called by PETSc."""
-        found.setArray(self._band.solve(load.getArray(readonly=True)))
+        solution.setArray(self._band.solve(load.getArray(readonly=True)))
 
 
 def factorise_directly(pc: PETSc.PC, system: System, workspace: Workspace) -> None:
@@ -81,13 +81,13 @@ def exact_solver(system: System) -> Iterator[Callable[[Array], Array]]:
     solver.setUp()
 
     def solve(load: Array) -> Array:
-        given, found = system.matrix.mat.createVecs()
-        given.array_w[:] = load
-        solver.apply(given, found)
-        answer = np.array(found.array_r)
-        for vector in (given, found):
+        right, solution = system.matrix.mat.createVecs()
+        right.array_w[:] = load
+        solver.apply(right, solution)
+        values = np.array(solution.array_r)
+        for vector in (right, solution):
             vector.destroy()
-        return answer
+        return values
 
     with destroyed_together(system.comm, solver.destroy):
         yield solve

@@ -99,7 +99,7 @@ class Relaxation:
         return Work()
 
     def commit(self, state: State) -> None:
-        """Nothing is kept."""
+        """Drag has no history."""
 
 
 @dataclass
@@ -163,10 +163,10 @@ def _descend(system: System, newton: Newton, part: Relaxation, t: float) -> Rela
     for _ in range(MOST_STEPS):
         slow = moved < NEARLY_THERE * part.shortest
         if slow and attempts.due() and not _still_leaving(newton, part, t, attempts):
-            found = _without_drag(system, newton, part, t, attempts)
+            equilibrium = _without_drag(system, newton, part, t, attempts)
             done.branch_switches += attempts.leaving
-            if found is not None:
-                done.iterations += found.iterations
+            if equilibrium is not None:
+                done.iterations += equilibrium.iterations
                 return done
         if attempts.leaving:
             _stabilise(newton, part, t)
@@ -231,7 +231,7 @@ def at_rest(system: System, t: float) -> State:
 
 
 def _step(system: System, newton: Newton, part: Relaxation, t: float, drag: float) -> Solution:
-    """A pseudo-time step with the given drag, committed; see `step_against`."""
+    """A pseudo-time step with the given drag to a stable equilibrium, committed; with drag, histories don't change."""
     solution = step_against(system, newton, part, t, drag)
     if drag > 0.0:
         _pass_through(system, solution.state)
@@ -259,9 +259,9 @@ def step_against(system: System, newton: Newton, part: Relaxation, t: float, dra
 def _pass_through(system: System, state: State) -> None:
     """Commit a state that is none of the stage's, so that its forces leave no trace."""
     keeping = [part for part in with_role(system.model.parts, Stateful) if part.traits.path_dependent]
-    kept = [part.state() for part in keeping]
+    states = [part.state() for part in keeping]
     system.commit(state)
-    for part, saved in zip(keeping, kept, strict=True):
+    for part, saved in zip(keeping, states, strict=True):
         part.restore(saved)
 
 

@@ -1,10 +1,10 @@
 """A share of the elastic tangent, by which Newton's method takes steps of bounded length where soil flows.
 
 Where soil flows its tangent all but vanishes, and increments are of any length, metres or kilometres. After such an
-iteration, in which the residual has grown or only a short part of the step was taken, the tangent gets a share of the
+iteration, in which the residual has grown or the line search allowed only a short step, the tangent gets a share of the
 elastic one, ten times as much each time, which bounds the increments as the damping of Levenberg and Marquardt does. As
-the residual falls it is taken back, so that Newton's method ends with its own tangent. Where the residual crawls under
-the elastic tangent alone, the step is given up: hundreds of iterations would not do.
+the residual falls that share is reduced, so that Newton's method ends with its own tangent. Where the residual crawls
+under the elastic tangent alone, the step is given up: hundreds of iterations would not do.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from collections.abc import Sequence
 from riser_soil.core.roles import Yielding
 
 FIRST_SHARE, MORE = 1e-4, 10.0  # of the elastic tangent, and how much more or less of it the next iteration has
-SHORT, FALLEN = 0.3, 0.7  # part of a step that is short; share of the residual left where it falls
-CRAWLS, IN_A_ROW = 0.9, 4  # share left where it falls in vain; so many times
+SHORT, FALLEN = 0.3, 0.7  # part of a step that is short; share to which the residual falls as it converges
+CRAWLS, IN_A_ROW = 0.9, 4  # share to which it falls where that is in vain; so many times
 
 
 class ElasticShare:
     """The share of the elastic tangent in that of parts that yield; see the module's text.
 
-    length: part of the last step that was taken; stagnant: consecutive iterations with the whole elastic
+    length: part of the last step that the line search allowed; stagnant: consecutive iterations with the whole elastic
     tangent that reduced the residual by less than a tenth.
     """
 

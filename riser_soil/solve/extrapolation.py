@@ -20,7 +20,7 @@ class Extrapolation:
     sums.
 
     The first difference is the mean rate of the last step [1/s], the second half its change [1/s2]. Beyond them only
-    terms that fall fast are taken: those of what is rough, such as short waves in the riser or a gust, don't.
+    terms that fall fast are used: those of what is rough, such as short waves in the riser or a gust, don't.
 
     most: steps that it continues, which is SMOOTH without contact and GRADUAL on clay. An impact ends what went before:
     with a penalty's contact the last rate alone is the better guess, ROUGH.
@@ -33,11 +33,11 @@ class Extrapolation:
 
     def increments(self, dt: float) -> Array:
         """The increments of a step of dt to come; nothing moves before a first step was accepted."""
-        found: Array = _extrapolated(self._differences, self._steps, dt)
-        return found
+        increments: Array = _extrapolated(self._differences, self._steps, dt)
+        return increments
 
     def accept(self, increments: Array, dt: float) -> None:
-        """Continue from a step of dt that has been taken."""
+        """Continue from an accepted step of dt."""
         self._differences, self._steps = _accepted(self._differences, self._steps, increments, dt, self._most)
 
     def state(self) -> Saved:
@@ -67,14 +67,14 @@ def _extrapolated(differences: Array, steps: Array, dt: float) -> Array:
 @njit
 def _accepted(differences: Array, steps: Array, increments: Array, dt: float, most: int) -> tuple[Array, Array]:
     """Differences (k, n) and sizes of the steps (k,) with a further one, at most so many."""
-    kept = min(differences.shape[0] + 1, most)
-    found, sizes = np.empty((kept, increments.size)), np.empty(kept)
+    orders = min(differences.shape[0] + 1, most)
+    divided, sizes = np.empty((orders, increments.size)), np.empty(orders)
     sizes[0], span = dt, dt
     for i in range(increments.size):
-        found[0, i] = increments[i] / dt
-    for order in range(1, kept):
+        divided[0, i] = increments[i] / dt
+    for order in range(1, orders):
         span += steps[order - 1]
         sizes[order] = steps[order - 1]
         for i in range(increments.size):
-            found[order, i] = (found[order - 1, i] - differences[order - 1, i]) / span
-    return found, sizes
+            divided[order, i] = (divided[order - 1, i] - differences[order - 1, i]) / span
+    return divided, sizes

@@ -101,7 +101,7 @@ class NodeMass:
         return out
 
     def restore(self, moving: Array | None) -> None:
-        """Nothing is kept."""
+        """Do nothing: a single node has no projectors."""
 
 
 def mass_of(nodes: int, prescribed: BoolArray, levers: Array) -> LineMass | NodeMass:
@@ -122,10 +122,10 @@ def projectors(blocks: Array, free: BoolArray) -> Array:
     mask = free.reshape(-1, dofs)
     masses, axes = np.linalg.eigh(mass * mask[:, :, None] * mask[:, None, :])
     moves = masses > MASSLESS * masses[:, -1:]
-    kept = axes * moves[:, None, :]
-    found = kept @ np.swapaxes(kept, 1, 2)
-    found[moves.all(axis=1)] = np.eye(dofs)  # without round-off
-    return np.asarray(found)
+    moving = axes * moves[:, None, :]
+    projectors = moving @ np.swapaxes(moving, 1, 2)
+    projectors[moves.all(axis=1)] = np.eye(dofs)  # without round-off
+    return np.asarray(projectors)
 
 
 @njit
@@ -145,7 +145,7 @@ def project(workspace: MatrixWorkspace, dofs: Dofs, mass: MassData) -> None:
     is on a diagonal.
     """
     K, ndof, largest = workspace.K, mass.inverse.shape[1], 0.0
-    left, own = np.zeros((ndof, ndof)), np.zeros(ndof)
+    product, own = np.zeros((ndof, ndof)), np.zeros(ndof)
     for e in range(K.shape[0]):
         for i in range(2 * ndof):
             largest = max(largest, K[e, i, i])
@@ -154,8 +154,8 @@ def project(workspace: MatrixWorkspace, dofs: Dofs, mass: MassData) -> None:
         for row in range(2):
             for column in range(2):
                 block = K[e, row * ndof : (row + 1) * ndof, column * ndof : (column + 1) * ndof]
-                _multiply(mass.moving[e + row], block, left)
-                _multiply(left, mass.moving[e + column], block)
+                _multiply(mass.moving[e + row], block, product)
+                _multiply(product, mass.moving[e + column], block)
     if largest == 0.0:
         largest = 1.0
     for n in range(dofs.residual.shape[0]):
@@ -173,13 +173,13 @@ def project(workspace: MatrixWorkspace, dofs: Dofs, mass: MassData) -> None:
 
 
 @njit
-def _multiply(left: Array, right: Array, out: Array) -> None:
+def _multiply(a: Array, b: Array, out: Array) -> None:
     """Write the product of two matrices, to another place."""
-    for i in range(left.shape[0]):
-        for j in range(right.shape[1]):
+    for i in range(a.shape[0]):
+        for j in range(b.shape[1]):
             total = 0.0
-            for k in range(left.shape[1]):
-                total += left[i, k] * right[k, j]
+            for k in range(a.shape[1]):
+                total += a[i, k] * b[k, j]
             out[i, j] = total
 
 
@@ -267,20 +267,20 @@ class OtherMass:
         self._inverse = np.divide(1.0, diagonal, out=np.zeros_like(diagonal), where=diagonal > 0.0)
 
     def write_accelerations(self, force: Array, out: Array) -> None:
-        """Write a with M a = force to local entries that are free; zero where there is no mass."""
+        """Write a with M a = force to free local entries, by conjugate gradients; zero where there is no mass."""
         numbering, inverse = self._system.numbering, self._inverse
-        left = np.where(inverse > 0.0, numbering.add_to_global(force), 0.0)
-        found, ahead = numbering.zeros(), inverse * left
-        size = limit = self._product(left, ahead)
+        residual = np.where(inverse > 0.0, numbering.add_to_global(force), 0.0)
+        acceleration, direction = numbering.zeros(), inverse * residual
+        size = limit = self._product(residual, direction)
         limit *= EXACT**2
         while size > limit:
-            along = self._times(ahead)
-            step = size / self._product(ahead, along)
-            found += step * ahead
-            left -= step * along
-            before, size = size, self._product(left, inverse * left)
-            ahead = inverse * left + size / before * ahead
-        numbering.to_local(found, out)
+            mass_times = self._times(direction)
+            step = size / self._product(direction, mass_times)
+            acceleration += step * direction
+            residual -= step * mass_times
+            before, size = size, self._product(residual, inverse * residual)
+            direction = inverse * residual + size / before * direction
+        numbering.to_local(acceleration, out)
 
     def _times(self, x: Array) -> Array:
         local = np.zeros(self._system.numbering.size)

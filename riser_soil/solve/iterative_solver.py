@@ -1,11 +1,11 @@
 """Iterative solver for soil too large to be factorised: GMRES, preconditioned by multigrid on the soil.
 
-The preconditioner takes three corrections, each of what the one before has left (Schwarz' method, symmetric and
-multiplicative): the riser with the soil's unknowns that it may touch, factorised together, as neither knows the other's
-answer to a stiff contact; all of the soil by a cycle of plain aggregation (PETSc's GAMG), which is told the soil's
-rigid motions; the riser once more. Memory and work of a cycle grow in proportion to the unknowns. What the riser's
-corrections change and need of the residual takes their columns and rows of the matrix alone. Smoothed aggregation would
-take as many iterations on clay that hardly changes its volume, and three times as long to be set up for a tangent.
+The preconditioner makes three corrections, each for the residual after the one before (Schwarz' method, symmetric and
+multiplicative): the riser with the soil's unknowns that it may touch, factorised together, as a stiff contact couples
+the two; all of the soil by a cycle of plain aggregation (PETSc's GAMG), which is given the soil's rigid motions; the
+riser once more. Memory and work of a cycle grow in proportion to the unknowns. The riser's corrections need only their
+own columns and rows of the matrix. Smoothed aggregation would take as many iterations on clay that hardly changes its
+volume, and three times as long to be set up for a tangent.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from riser_soil.solve.python_context import PythonContext
 if TYPE_CHECKING:
     from riser_soil.soil.field import SoilField
 
-TOLERANCE, MOST_ITERATIONS, RESTART = 1e-4, 500, 100  # share of the residual that may be left
+TOLERANCE, MOST_ITERATIONS, RESTART = 1e-4, 500, 100  # largest final share of the residual
 MULTIGRID = {  # read when it is made and, of its levels, when it is set up
     "soil_pc_gamg_reuse_interpolation": "true",  # of the first tangent, for all of its pattern
     "soil_pc_gamg_agg_nsmooths": "0",
@@ -120,7 +120,7 @@ class _Corrections:
         self._near, self._soil = near, soil
         self._columns = matrix.createSubMatrix(self._all, near.rows)
         self._rows = matrix.createSubMatrix(near.rows, self._all)
-        self._left, self._near_left = self._columns.createVecLeft(), self._rows.createVecLeft()
+        self._residual, self._near_rows = self._columns.createVecLeft(), self._rows.createVecLeft()
 
     def take(self, matrix: PETSc.Mat) -> None:
         """Take the values of a matrix of the same pattern."""
@@ -130,35 +130,35 @@ class _Corrections:
             correction.take(matrix)
 
     def apply(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
-        """y, about the solution of the system for x; each takes what the ones before have left."""
+        """y, about the solution of the system for x: each correction is for the residual after the ones before."""
         near, soil = self._near, self._soil
-        asked = x.array_r[near.place]
+        load = x.array_r[near.place]
         y.set(0.0)
-        near.add(asked, y)
-        self._columns.mult(near.found, self._left)
-        self._left.aypx(-1.0, x)
-        soil.add(self._left.array_r[soil.place], y)
-        self._rows.mult(y, self._near_left)
-        near.add(asked - self._near_left.array_r, y)
+        near.add(load, y)
+        self._columns.mult(near.solution, self._residual)
+        self._residual.aypx(-1.0, x)
+        soil.add(self._residual.array_r[soil.place], y)
+        self._rows.mult(y, self._near_rows)
+        near.add(load - self._near_rows.array_r, y)
 
     def destroy(self) -> None:
         for correction in (self._near, self._soil):
             correction.destroy()
-        for thing in (self._columns, self._rows, self._left, self._near_left, self._all):
+        for thing in (self._columns, self._rows, self._residual, self._near_rows, self._all):
             thing.destroy()
 
 
 class _Correction:
     """Solver of some rows of a matrix, on the rank that owns them: sorted (n,).
 
-    place: (n,) of them among the rank's rows; found: its last answer.
+    place: (n,) of them among the rank's rows; solution: for the last residual.
     """
 
     def __init__(self, matrix: PETSc.Mat, rows: IntArray, solver: PETSc.PC) -> None:
         self.place = rows - matrix.getOwnershipRange()[0]
         self.rows = PETSc.IS().createGeneral(rows.astype(PETSc.IntType), comm=matrix.comm)
         self.matrix = matrix.createSubMatrix(self.rows, self.rows)
-        self.found, self._residual = self.matrix.createVecs()
+        self.solution, self._residual = self.matrix.createVecs()
         self._solver = solver
         solver.setOperators(self.matrix)
 
@@ -168,13 +168,13 @@ class _Correction:
         self._solver.setUp()
 
     def add(self, residual: Array, to: PETSc.Vec) -> None:
-        """Add what the residual (n,) of the rows asks for."""
+        """Solve for a residual (n,) of the rows, and add the solution."""
         self._residual.array_w[:] = residual
-        self._solver.apply(self._residual, self.found)
-        to.array_w[self.place] += self.found.array_r
+        self._solver.apply(self._residual, self.solution)
+        to.array_w[self.place] += self.solution.array_r
 
     def destroy(self) -> None:
-        for thing in (self._solver, self.matrix, self.found, self._residual, self.rows):
+        for thing in (self._solver, self.matrix, self.solution, self._residual, self.rows):
             thing.destroy()
 
 
@@ -186,12 +186,12 @@ def _rigid_motions(points: Array, axis: IntArray, matrix: PETSc.Mat) -> PETSc.Nu
     arm = points - total[:3] / total[3]
     shifts = [np.eye(3)[i][axis] for i in range(3)]
     turns = [np.cross(np.eye(3)[i], arm)[np.arange(len(axis)), axis] for i in range(3)]
-    found: list[PETSc.Vec] = []
+    basis: list[PETSc.Vec] = []
     for motion in (*shifts, *turns):
         vector = matrix.createVecLeft()
         vector.array_w[:] = motion
-        for other in found:
+        for other in basis:
             vector.axpy(-float(vector.dot(other)), other)
         vector.normalize()
-        found.append(vector)
-    return PETSc.NullSpace().create(vectors=found, comm=matrix.comm)
+        basis.append(vector)
+    return PETSc.NullSpace().create(vectors=basis, comm=matrix.comm)

@@ -157,8 +157,8 @@ class JointBorder(Coupling):
         vectors, frames = (m, 2, 3), (m, 2, 3, 3)
         places = JointPlaces(*(np.zeros(shape) for shape in (vectors, vectors, frames, frames, frames)))
         matrices = np.zeros((m, 12)), np.zeros((m, 12, 12)), np.zeros((m, 12))
-        found = ((line, _sides_of(joints, line)) for line in lines)
-        self.lines = [(line, Packed(sides)) for line, sides in found if sides.node.size]
+        of_lines = ((line, _sides_of(joints, line)) for line in lines)
+        self.lines = [(line, Packed(sides)) for line, sides in of_lines if sides.node.size]
         moved = _numbers_of_moved(joints.dofs, lines)
         dense.move({line: moved[line.line.part] for line in lines})
         self.data = JointData(joints.laws, places, np.zeros(1), *matrices, moved[joints.dofs])
@@ -214,11 +214,11 @@ def _numbers_of_moved(dofs: IntArray, lines: Sequence[PackedLine]) -> IntArray:
 
 def _sides_of(joints: Joints, line: PackedLine) -> Sides:
     """The joints' sides on a line or body."""
-    found = [
+    rows = [
         (j, s, side.node)
         for j, joint in enumerate(joints.joints)
         for s, side in enumerate(joint.sides)
         if side.field is line.line
     ]
-    joint, side, node = np.array(found, dtype=np.int64).reshape(-1, 3).T.copy()
+    joint, side, node = np.array(rows, dtype=np.int64).reshape(-1, 3).T.copy()
     return Sides(joint, side, node)

@@ -27,7 +27,7 @@ from riser_soil.solve.linear_solver import LinearSolver
 from riser_soil.solve.python_context import PythonContext
 
 FEWEST = 10  # iterations that a solve may take in any case, where new factors want some, too
-SEEN = 3  # iterations of a solve before their rate says how many it will take
+FIRST_RATE = 3  # iterations of a solve before their rate predicts how many it needs
 FASTER = 1.3  # how many times fewer they may be than by that rate, as conjugate residuals get faster
 PER_ENTRY = 36.0  # operations of a factorisation that take as long as a solve for one entry of its factors: 32 to 40
 SOLVED = PETSc.KSP.ConvergedReason.CONVERGED_RTOL
@@ -82,11 +82,11 @@ class KeptFactors(PythonContext, LinearSolver):
         assert self._factors is not None
         directions = _Directions(matrix, self._factors, self._levers)
         reason = directions.descend(b, x, tolerance, self._most)
-        taken = directions.count
+        iterations = directions.count
         directions.destroy()
-        self.iterations += taken
-        self._spent, self._solves = self._spent + taken, self._solves + 1
-        self._stale = taken * self._solves > self._spent
+        self.iterations += iterations
+        self._spent, self._solves = self._spent + iterations, self._solves + 1
+        self._stale = iterations * self._solves > self._spent
         return reason
 
     @property
@@ -142,8 +142,8 @@ class KeptFactors(PythonContext, LinearSolver):
         if self._factored is None or self._stale:
             return saved
         rows = dict(zip(("starts", "columns", "values"), self._factored.getValuesCSR(), strict=True))
-        kept = {"worth": self.worth, "spent": self._spent, "solves": self._solves, "outgrown": self._outgrown}
-        return saved | rows | {name: np.array(value) for name, value in kept.items()}
+        costs = {"worth": self.worth, "spent": self._spent, "solves": self._solves, "outgrown": self._outgrown}
+        return saved | rows | {name: np.array(value) for name, value in costs.items()}
 
     def restore(self, saved: Saved) -> None:
         self._whole = bool(saved["whole"])
@@ -169,7 +169,7 @@ class _Directions:
         return len(self._pairs)
 
     def descend(self, b: PETSc.Vec, x: PETSc.Vec, tolerance: float, most: int) -> int:
-        """From x = 0 until a share of b over the levers is left, and why it ended."""
+        """Iterate from x = 0 until the residual over the levers has fallen to a share of b's; why it ended."""
         x.set(0.0)
         rest, whole = b.copy(), b.duplicate()
         rest.pointwiseDivide(b, self._levers)
@@ -177,7 +177,7 @@ class _Directions:
         reason = SOLVED
         while (norm := rest.norm()) > tolerance * first and reason == SOLVED:
             whole.pointwiseMult(rest, self._levers)
-            reason = self._add(whole) if self._foretold(norm / first, tolerance) <= most else TOO_LONG
+            reason = self._add(whole) if self._needed(norm / first, tolerance) <= most else TOO_LONG
             if reason == SOLVED:
                 z, q = self._pairs[-1]
                 part = q.dot(rest)
@@ -187,11 +187,11 @@ class _Directions:
         whole.destroy()
         return int(reason)
 
-    def _foretold(self, left: float, tolerance: float) -> float:
-        """Iterations that the solve takes at least, at the rate at which this share of its residual was left so far."""
-        if self.count < SEEN or left >= 1.0:
+    def _needed(self, share: float, tolerance: float) -> float:
+        """Iterations that the solve needs at least, by the rate at which its residual has fallen to this share."""
+        if self.count < FIRST_RATE or share >= 1.0:
             return self.count + 1.0
-        return max(self.count + 1.0, self.count * math.log(tolerance) / math.log(left) / FASTER)
+        return max(self.count + 1.0, self.count * math.log(tolerance) / math.log(share) / FASTER)
 
     def _add(self, residual: PETSc.Vec) -> int:
         """The step that the factors give for a residual, without what the others have done."""

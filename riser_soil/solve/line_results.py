@@ -1,6 +1,6 @@
-"""Section forces and contact results of a line by the forces that the line solver has left, where it has any.
+"""Section forces and contact results of a line by the forces that the line solver evaluated last.
 
-Elsewhere they are found anew, see `step_results`.
+Where it has not solved the step they are evaluated anew, by `step_results`.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class LineResults:
         self._packed, self._line, self._smooth = packed, line, smooth
         self._solved: State | None = None  # last, where no forces may have jumped since
         self._committed: Array | None = None  # the line's places, where its last step was solved by the loop
-        self._contacts: dict[RiserContact, tuple[Bound, Array]] = {}  # how they tell their results, and where to
+        self._contacts: dict[RiserContact, tuple[Bound, Array]] = {}  # kernel, and the results that it writes
         self._whole = not any(overrides(part, "viscous_forces") for part in packed.parts.parts)
 
     def forget(self) -> None:
@@ -67,12 +67,12 @@ class LineResults:
             return None
         if contact not in self._contacts:
             self._contacts[contact] = self._bound_results(contact)
-        put, found = self._contacts[contact]
-        put()
-        return found.copy()
+        write, results = self._contacts[contact]
+        write()
+        return results.copy()
 
     def _bound_results(self, contact: RiserContact) -> tuple[Bound, Array]:
-        """A contact's results where the loop has left the line: what writes them, and where to."""
+        """Kernel that writes a contact's results in the line's last configuration, and their array."""
         from riser_soil.contact.contact import ContactResults, size_of, write_results
 
         parts: list[Any] = [*self._packed.parts.parts]
@@ -82,7 +82,7 @@ class LineResults:
         return bound(write_results, data, self._packed.packed_at, Packed(ContactResults.within(out, *sizes))), out
 
     def _has_solved(self, state: State) -> bool:
-        """Whether a state is that of the step solved last, whose forces the loop has left and nothing has changed."""
+        """Whether a state is that of the step solved last, whose forces are still those of the line solver."""
         solved = self._solved
         return solved is not None and self._whole and state.v is solved.v and state.a is solved.a
 

@@ -26,13 +26,13 @@ def step_length(start: float, slope: Callable[[float], float]) -> float:
     low, high, below, above = 0.0, 1.0, start, end
     for _ in range(MOST):
         part = _between(low, high, below, above)
-        found = slope(part)
-        if abs(found) <= NEAR * -start:
+        at_part = slope(part)
+        if abs(at_part) <= NEAR * -start:
             break
-        if found < 0.0:
-            low, below, above = part, found, 0.5 * above
+        if at_part < 0.0:
+            low, below, above = part, at_part, 0.5 * above
         else:
-            high, above, below = part, found, 0.5 * below
+            high, above, below = part, at_part, 0.5 * below
     return part
 
 

@@ -97,9 +97,9 @@ class LineSolver(StepResults):
         self._no_work = {part.name: Work() for part in system.model.parts}
         self._results: dict[Line, LineResults] = {}
         if packed.smooth:
-            found = [(packed, packed.line) for packed in self._lines]
+            fields = [(packed, packed.line) for packed in self._lines]
             self._results = {
-                line: LineResults(packed, line, system.smooth) for packed, line in found if isinstance(line, Line)
+                line: LineResults(packed, line, system.smooth) for packed, line in fields if isinstance(line, Line)
             }
 
     def solve(self, step: Step, settings: NewtonSettings, at_equilibrium: bool) -> Solution | str:
@@ -143,11 +143,11 @@ class LineSolver(StepResults):
         return failure_text(ending, convergence.norms, self._place()), convergence.norms
 
     def _limits(self, step: Step, settings: NewtonSettings, at_equilibrium: bool) -> StopLimits:
-        """A smooth motion takes an iteration, which answers its load."""
+        """When Newton's iterations stop. A smooth motion takes an iteration at least, which reduces its load."""
         gradual = self.system.gradual and all(each.gradual for each in self._couplings)
         smooth = self.system.smooth
-        answers = smooth or at_equilibrium or bool(step.guess[~self.system.prescribed].any())
-        return limits_of(settings, smooth, gradual, answers, step.scheme.step_over_trial)
+        done_at_start = smooth or at_equilibrium or bool(step.guess[~self.system.prescribed].any())
+        return limits_of(settings, smooth, gradual, done_at_start, step.scheme.step_over_trial)
 
     def _tangle(self, trial: StepTrial) -> str:
         """Why the solution is not an admissible state of a line; "" where it is."""
@@ -160,11 +160,11 @@ class LineSolver(StepResults):
         return ""
 
     def _end(self, trial: StepTrial) -> State:
-        """The state found at the step's end."""
+        """The solution at the step's end."""
         u, v, a = self._nothing.copy(), trial.begun.v.copy(), trial.begun.a.copy()
         for packed in self._lines:
-            at, found = packed.line.part, packed.step
-            u[at], v[at], a[at] = found.u.ravel(), found.v.ravel(), found.a.ravel()
+            at, step = packed.line.part, packed.step
+            u[at], v[at], a[at] = step.u.ravel(), step.v.ravel(), step.a.ravel()
         for each in self._couplings:
             each.put_increments(trial.weights, u, v, a)
         return trial.end_of(State(trial.begun.t, u, v, a, dt=trial.begun.dt))
@@ -173,9 +173,9 @@ class LineSolver(StepResults):
         """Forces of the last trial; on the free dofs of soil they are in balance."""
         forces = Forces.zeros(len(self._nothing))
         for packed in self._lines:
-            found, at = packed.forces, packed.line.part
-            forces.inertia[at], forces.force[at] = found.inertia.ravel(), found.force.ravel()
-            forces.end[at] = found.end.ravel()
+            of_line, at = packed.forces, packed.line.part
+            forces.inertia[at], forces.force[at] = of_line.inertia.ravel(), of_line.force.ravel()
+            forces.end[at] = of_line.end.ravel()
         return forces
 
     def commit(self, state: State) -> None:
@@ -186,26 +186,26 @@ class LineSolver(StepResults):
         since = time.perf_counter()
         for packed in self._lines:
             packed.keep()
-        kept = [part for packed in self._lines for part in packed.committed]
-        self.system.commit(state, [*kept, *(part for each in self._couplings for part in each.parts)])
+        committed = [part for packed in self._lines for part in packed.committed]
+        self.system.commit(state, [*committed, *(part for each in self._couplings for part in each.parts)])
         for results in self._results.values():
             results.commit()
         self.system.clock.add("line solver", since)
 
     def element_residual(self, line: Line, state: State) -> Array:
-        known = self._results.get(line)
-        found = None if known is None else known.element_residual(state)
-        return super().element_residual(line, state) if found is None else found
+        of_line = self._results.get(line)
+        residual = None if of_line is None else of_line.element_residual(state)
+        return super().element_residual(line, state) if residual is None else residual
 
     def section_input(self, line: Line, state: State) -> Array:
-        known = self._results.get(line)
-        found = None if known is None else known.section_input(state, lambda: self._on_ends(line, state))
-        return super().section_input(line, state) if found is None else found
+        of_line = self._results.get(line)
+        section_forces = None if of_line is None else of_line.section_input(state, lambda: self._on_ends(line, state))
+        return super().section_input(line, state) if section_forces is None else section_forces
 
     def contact_results(self, contact: RiserContact, state: State) -> Array:
-        known = self._results.get(contact.line)
-        found = None if known is None else known.contact_results(contact)
-        return super().contact_results(contact, state) if found is None else found
+        of_line = self._results.get(contact.line)
+        results = None if of_line is None else of_line.contact_results(contact)
+        return super().contact_results(contact, state) if results is None else results
 
     def energy_exchanged(self, before: State, solution: Solution) -> tuple[Energy, dict[str, Work]]:
         """Energy stored at the end of the step solved last, and what each part turned over in it."""

@@ -76,7 +76,7 @@ class Coupling:
         return []
 
     def above(self, above: Packed) -> list[Bound]:
-        """Kernels that tell where something in the border's residual can be told from its round-off, above (1,)."""
+        """Kernels that write whether the border's residual is above its round-off, above (1,)."""
         return []
 
     def fill(self) -> list[Bound]:
@@ -140,7 +140,7 @@ class LineSystem:
             Bound(kernels.set_zero, failure),
             *coupled(lambda it: it.outgrown(failure)),
         ]
-        bulk, contact, held_bulk, held_contact = (
+        bulk, contact, fixed_rate_bulk, fixed_rate_contact = (
             [kernel for line in each for kernel in line]
             for each in zip(*(line.tangents(not self.smooth) for line in lines), strict=True)
         )
@@ -153,7 +153,7 @@ class LineSystem:
         terms = [Bound(kernels.write_terms, line.packed_workspace, line.packed_dofs) for line in lines]
         looked = [Bound(kernels.find_above, line.packed_dofs, above) for line in lines]
         probe = [
-            *held_bulk, *joined, *held_contact, *sizes, *terms, *coupled(lambda it: it.terms()),
+            *fixed_rate_bulk, *joined, *fixed_rate_contact, *sizes, *terms, *coupled(lambda it: it.terms()),
             Bound(kernels.set_zero, above), *looked, *coupled(lambda it: it.above(above)),
         ]  # fmt: skip
         renew = [*bulk, *joined, *contact, *factors]
@@ -166,9 +166,10 @@ class LineSystem:
         self.correct = in_turn(*factors, *improve)
 
     def begin(self, state: State, past: Array, weights: Weights, limits: StopLimits) -> None:
-        """Begin a step.
+        """Begin a step from a state of all local dofs.
 
-        state, past, weights: see `StepTrial`; of all local dofs.
+        past (size,): share of the forces at the step's start. weights: of forces in the balance and of
+        the trial's rates. limits: of Newton's iterations.
         """
         for line in self.lines:
             at = line.line.part
@@ -183,8 +184,8 @@ class LineSystem:
         return ending
 
     def judge(self) -> str:
-        """Find the residual of the trial: how the method ends there, OUTGROWN where more touches the lines than there
-        is room for.
+        """Evaluate the residual of the trial: how the method ends there; OUTGROWN where more touches the lines than
+        there is room for.
         """
         self.evaluate()
         norm, apart, in_play = as_list(self._norms)
@@ -194,12 +195,12 @@ class LineSystem:
         return self.convergence.ending(in_play, self._at_round_off)
 
     def _at_round_off(self) -> bool:
-        """Whether nothing in the residual can be told from its round-off; the tangent's workspace is lost."""
+        """Whether all of the residual may be round-off; overwrites the tangent's workspace."""
         self._probe()
         return not self._above[0]
 
     def improve(self) -> str:
-        """Take the tangent's answer off the increments. A kept tangent is still in its workspace: a residual that may
+        """Newton update: increments -= K⁻¹ residual. A kept tangent is still in its workspace: a residual that may
         have been probed there has fallen by less than one that leaves it.
         """
         if self.convergence.keeps_tangent:
@@ -212,7 +213,7 @@ class LineSystem:
         return ITERATING
 
     def account(self, before: State) -> None:
-        """Find the energy at the end of the step solved last, and the work in it."""
+        """Compute the energy at the end of the step solved last, and the work in it."""
         for line in self.lines:
             line.move_start(before)
         self._account()

@@ -21,7 +21,7 @@ IN_LIBRARY = 76  # PETSc's code of an error in another library, here MUMPS
 class LinearSolver:
     """Solver of one linear system after the other; collective.
 
-    factorises: whether pivots may be counted, too. to_tolerance: whether each is solved as exactly as the KSP is told.
+    factorises: whether pivots may be counted, too. to_tolerance: whether each is solved to the KSP's tolerance.
     options: PETSc's, where the user gives none of the name.
     """
 
@@ -39,7 +39,7 @@ class LinearSolver:
         raise NotImplementedError
 
     def failed(self, ksp: PETSc.KSP) -> tuple[str, bool]:
-        """Drop what a failed solution has left; what to say of it, and whether another try may do."""
+        """Drop the data of a failed solution; a message about it, and whether another try may do."""
         self.forget()
         return "", False
 
@@ -48,10 +48,10 @@ class LinearSolver:
         self.forget()
 
     def forget(self) -> None:
-        """Drop all that is kept."""
+        """Drop factors and all else that is cached."""
 
     def state(self) -> Saved:
-        """What is kept, for a run that is to go on."""
+        """Cached data, for a run that is to go on."""
         return {}
 
     def restore(self, saved: Saved) -> None:

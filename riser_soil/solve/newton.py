@@ -1,4 +1,4 @@
-"""Newton's method for the steps of a stage, by kernels of lines or over the parts; soil's balance under lines held."""
+"""Newton's method for the steps of a stage, by kernels of lines or over the parts; soil's balance under fixed lines."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from riser_soil.solve.step_results import StepResults
 if TYPE_CHECKING:
     from riser_soil.solve.line_solver import LineSolver
 
-BALANCED = 1e-4  # of the forces in play, that a balance under held lines may lack
+BALANCED = 1e-4  # of the forces in play, that a balance under fixed lines may lack
 
 
 class Newton:
@@ -56,11 +56,11 @@ class Newton:
         near, self.at_equilibrium = self.at_equilibrium, False
         if self.lines is None:
             return self.by_parts.solve(step, near, refined)
-        found = self.lines.solve(step, self.settings, near)
-        if isinstance(found, Solution):
-            return found
+        result = self.lines.solve(step, self.settings, near)
+        if isinstance(result, Solution):
+            return result
         if not self.lines.leave_to_parts():
-            raise NotConvergedError(found)
+            raise NotConvergedError(result)
         self.by_parts.renew()
         return self.by_parts.solve(step, near)
 
@@ -79,7 +79,7 @@ class Newton:
             )
 
     def unstable_modes(self, state: State, forces: Forces | None = None, doubtful: bool = False) -> int:
-        """Negative pivots at a static state, see `StepIteration`; collective."""
+        """Number of negative pivots of the tangent at a static state, which are its unstable modes; collective."""
         return self.by_parts.unstable_modes(state, forces, doubtful)
 
     def renew(self) -> None:
@@ -88,7 +88,7 @@ class Newton:
             self._by_parts.renew()
 
     def state(self) -> Saved:
-        """What would be the same but to round-off if it were found anew; of the line solver there is nothing."""
+        """Factors and the like, without which a resumed run would differ by round-off; the line solver has none."""
         return self.by_parts.state() if self.lines is None else {}
 
     def restore(self, saved: Saved) -> None:
@@ -96,7 +96,7 @@ class Newton:
             self.by_parts.restore(saved)
 
     def destroy(self) -> None:
-        """Give back what the ranks hold together; collective."""
+        """Free what all ranks share; collective."""
         if self._by_parts is not None:
             self._by_parts.destroy()
 
@@ -116,8 +116,8 @@ def solver_of(system: System, dynamic: bool, settings: NewtonSettings) -> Newton
 def balance_under_fixed_lines(
     comm: Communicator, model: Model, t: float, settings: NewtonSettings, clock: Timer, known: Patterns | None = None
 ) -> None:
-    """Find what the parts of group E, soil and contact, balance at while no line moves, and commit it: to `BALANCED`,
-    as the next step takes up what is left, or all of it where this fails. known: see `Matrix`. Collective.
+    """Solve for the equilibrium of the parts of group E, soil and contact, while no line moves, and commit it: to
+    `BALANCED`, as the next step balances the rest, or all of it where this fails. known: see `Matrix`. Collective.
     """
     settings = replace(settings, tolerance=max(settings.tolerance, BALANCED))
     parts = [part for part in model.parts if part.traits.groups == "E"]
@@ -129,11 +129,11 @@ def balance_under_fixed_lines(
         with destroyed_together(comm, newton.destroy, system.destroy):
             before = State.at_rest(t, system.numbering.size)
             try:
-                found = newton.solve(Step.static(before, seconds=0.0)).state  # what flows under rate keeps its stress
+                state = newton.solve(Step.static(before, seconds=0.0)).state  # what flows under rate keeps its stress
             except NotConvergedError:
                 return
             for part in parts:
                 if part.active:
-                    part.commit(found)
+                    part.commit(state)
             for field in model.others:
-                field.commit(found)
+                field.commit(state)

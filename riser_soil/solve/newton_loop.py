@@ -1,9 +1,9 @@
-"""Newton's method, over whatever balance it is to find: the one loop beside PETSc's SNES.
+"""Newton's method for any balance: the one loop beside PETSc's SNES.
 
     residual r(x), judged; tangent K(x), unless the last one is kept; x <- x - K^-1 r
 
-What a balance is made of stands elsewhere: the parts of a system (`step_iteration`), or lines and bodies by kernels
-(`packed_line`). When the loop ends is `convergence`'s.
+The residual and the tangent are those of the parts of a system (`step_iteration`), or of lines and bodies by kernels
+(`packed_line`). `convergence` says when the loop ends.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ class Iteration(Protocol):
     """A balance at unknowns that it holds itself. Both methods are collective."""
 
     def judge(self) -> str:
-        """Find the residual at the unknowns: how the method ends there, else ITERATING."""
+        """Evaluate the residual at the unknowns: how the method ends there, else ITERATING."""
         ...
 
     def improve(self) -> str:
-        """Take the tangent's answer to the residual off the unknowns: ITERATING, or why there is none."""
+        """Newton update x -= K⁻¹ r of the unknowns: ITERATING, or why it can't be made."""
         ...
 
 
 def iterate(balance: Iteration) -> str:
-    """Iterate until the balance is found, or can't be: how it ends; collective."""
+    """Iterate until the method converges or fails: how it ends; collective."""
     while (ending := balance.judge()) == ITERATING:
         if (ending := balance.improve()) != ITERATING:
             break
@@ -55,19 +55,19 @@ class Balance(Protocol):
     def shortened(self, x: Array, y: Array) -> Array: ...
 
     def note_step_length(self, part: float) -> None:
-        """Take note of the part of the last step that another line search has found."""
+        """Record the part of the last step that another line search has chosen."""
         ...
 
     def linear_tolerance(self) -> float: ...
 
     def negligible(self) -> float:
-        """What of the residual [N] needs no answer of the next linear system; collective."""
+        """Residual [N] that the next linear system need not reduce; collective."""
         ...
 
 
 class Loop:
-    """Base of what finds a `Balance`. max_iterations: those after which a step is looked at. factorises: whether
-    pivots may be counted, too.
+    """Base of the loops that solve a `Balance`. max_iterations: those after which a step is looked at. factorises:
+    whether pivots may be counted, too.
     """
 
     max_iterations: int
@@ -79,25 +79,25 @@ class Loop:
         return False
 
     def iterate(self, x: Array) -> str:
-        """Iterate from x: how it ends; what was judged last is what was found; collective."""
+        """Iterate from x: how it ends; the unknowns judged last are the solution; collective."""
         raise NotImplementedError
 
     def respond(self, f: Array) -> tuple[str, Array]:
-        """What the present tangent answers to a residual; "", or why it has no answer; collective."""
+        """"", or why it fails, and K⁻¹ f by the present tangent; collective."""
         raise NotImplementedError
 
     def release(self) -> None:
-        """Let go of the matrix, in whose place another is to come."""
+        """Free the matrix, which another one is to replace."""
 
     def renew(self) -> None:
         """Take the matrix that the system has now."""
 
     def state(self) -> Saved:
-        """What is kept of linear systems."""
+        """State of the linear solver."""
         return {}
 
     def restore(self, saved: Saved) -> None:
-        """Go on with what was kept."""
+        """Go on with a saved state."""
 
     def destroy(self) -> None:
-        """Give back what the ranks hold together; collective."""
+        """Free what all ranks share; collective."""

@@ -46,7 +46,7 @@ class NewtonSettings:
 
 @lru_cache(maxsize=8)
 def limits_of(
-    settings: NewtonSettings, starts_near: bool, gradual: bool, answers_load: bool, step_over_trial: float = 1.0
+    settings: NewtonSettings, starts_near: bool, gradual: bool, floor_at_start: bool, step_over_trial: float = 1.0
 ) -> StopLimits:
     """The settings are of the balance by the increments of the whole step, the limits by those to the trial.
 
@@ -61,5 +61,5 @@ def limits_of(
         settings.reuse if starts_near else beside,
         settings.max_iterations,
         max(settings.least_iterations, int(starts_near)),
-        answers_load,
+        floor_at_start,
     )

@@ -36,7 +36,7 @@ class PackedLine:
         self._start = [values.ravel() for values in (self.step.u, self.step.v0, self.step.a0, self.step.past)]
         self.dofs = Dofs(prescribed.reshape(shape), levers.reshape(shape), *_zeros(3, shape))
         self.weights, self._maps = self._trial.weights, self._trial.maps
-        self._weights_at_held_rates = Packed(Weights.of_statics())
+        self._weights_at_fixed_rates = Packed(Weights.of_statics())
         self.packed_at, self.packed_forces = self._kernels.packed_at, self._kernels.packed_forces
         self.packed_step, self.packed_dofs, self.packed_workspace = map(Packed, (self.step, self.dofs, self.workspace))
         self.K = Packed(self.workspace.K)
@@ -56,7 +56,7 @@ class PackedLine:
         return [follow, self._trial.place, *self._kernels.find_forces()]
 
     def balance(self, sums: Packed) -> list[Bound]:
-        """Kernels that write the residual of the forces found, and add to its norms."""
+        """Kernels that write the residual of the evaluated forces, and add to its norms."""
         forces, dofs = self.packed_forces, self.packed_dofs
         return [
             self._kernels.collect(),
@@ -65,7 +65,7 @@ class PackedLine:
         ]
 
     def tangents(self, contact: bool) -> tuple[list[Bound], list[Bound], list[Bound], list[Bound]]:
-        """Kernels that write the tangent but for contact's share, and that add this; the same of both at held rates.
+        """Kernels that write the tangent but for contact's share, and that add this; the same of both at fixed rates.
         contact: whether something beside the line's own parts touches it.
         """
         others = [each for each in self._kernels.data if all(each is not one for one in self._touching)]
@@ -76,10 +76,10 @@ class PackedLine:
         def contacts(weights: Packed) -> list[Bound]:
             return [*begun, *self._kernels.tangent(self._touching, self._maps, weights, self.K)]
 
-        moving, at_held_rates = self.weights, self._weights_at_held_rates
+        moving, at_fixed_rates = self.weights, self._weights_at_fixed_rates
         return (
             *(self._bulk(others, moving, bulk), contacts(moving)),
-            *(self._bulk(others, at_held_rates, bulk), contacts(at_held_rates)),
+            *(self._bulk(others, at_fixed_rates, bulk), contacts(at_fixed_rates)),
         )
 
     def _bulk(self, parts: Sequence[KernelData], weights: Packed, K: Packed) -> list[Bound]:
@@ -106,7 +106,7 @@ class PackedLine:
         return Bound(kernels.factorise, self.packed_workspace, failure)
 
     def improve(self) -> Bound:
-        """The kernel that takes the band's answer off the increments."""
+        """The kernel that subtracts the band's solution from the increments."""
         return Bound(kernels.improve, self.packed_workspace, self.packed_step, self.packed_dofs)
 
     def account(self, energy: Packed) -> list[Bound]:
@@ -121,7 +121,7 @@ class PackedLine:
         return self._trials.then.at
 
     def write_residual(self, out: Array) -> Bound:
-        """The kernel that writes the residual of the elements (ne, 2 ndof) in the forces found last."""
+        """The kernel that writes the residual of the elements (ne, 2 ndof) by the forces evaluated last."""
         return self._kernels.write_residual(out)
 
     def move_start(self, before: State) -> None:
@@ -140,7 +140,7 @@ class PackedLine:
         u, v, a, earlier = self._start
         u[:], v[:], a[:], earlier[:] = state.u, state.v, state.a, past
         self._trial.weigh(weights)
-        self._weights_at_held_rates.renew(self.weights.value._replace(shift_v=0.0, shift_a=0.0))
+        self._weights_at_fixed_rates.renew(self.weights.value._replace(shift_v=0.0, shift_a=0.0))
 
     @property
     def folding(self) -> tuple[int, int]:

@@ -120,7 +120,7 @@ def refuse_unread(snes: PETSc.SNES) -> None:
 
 def _is_read(name: str) -> bool:
     """Whether PETSc has looked for an option; petsc4py of PETSc 3.18 lacks this function of its library."""
-    found = ctypes.c_int(0)
-    ctypes.CDLL(PETSc.__file__).PetscOptionsUsed(None, name.encode(), ctypes.byref(found))
-    return bool(found.value)
+    used = ctypes.c_int(0)
+    ctypes.CDLL(PETSc.__file__).PetscOptionsUsed(None, name.encode(), ctypes.byref(used))
+    return bool(used.value)
 

@@ -2,14 +2,14 @@
 
 The residual of a stiff line or contact is a small difference of large numbers: some eps EA of a bar that has turned,
 eps k z of a penalty k at a height z, eps EI phi/L^2 of an element that has turned by an angle phi. The coordinates x
-that the forces follow from are known to a rounding each, so that a row i of the residual can't be told from
+that the forces follow from are known to a rounding each, so that a row i of the residual may be off by
 
     eps sum_j |K_ij| |x_j|,
 
-summed over the elements, their tangents K at held rates: a bound of the error of a sum of products in floating point
+summed over the elements, their tangents K at fixed rates: a bound of the error of a sum of products in floating point
 (Higham, Accuracy and Stability of Numerical Algorithms, 2002, 3.1), here with a factor for the few roundings of each
-term. Where that is above what is allowed, Newton's method ends because nothing is left that it could improve. A load or
-time step that stops so is solved as far as it can be told; a larger floor for the residual would hide small loads on
+term. Where that is above what is allowed, Newton's method ends because it can improve nothing more. A load or time
+step that stops so is solved as far as its round-off allows; a larger floor for the residual would hide small loads on
 long lines instead.
 """
 
@@ -26,16 +26,16 @@ from riser_soil.core.part import Forces
 from riser_soil.core.system import System
 
 EPS = float(np.finfo(float).eps)
-ROUND_OFF = 8.0 * EPS  # of the sum of sizes; residuals that stayed were found at up to 2 eps of it
+ROUND_OFF = 8.0 * EPS  # of the sum of sizes; residuals at round-off were observed up to 2 eps of it
 
 
 @njit
 def square_of(residual: Array, levers: Array, first: int, last: int) -> float:
     """Square of the norm [N] of some rows of a residual, moments over the lever."""
-    found = 0.0
+    square = 0.0
     for k in range(first, last):
-        found += (residual[k] / levers[k]) ** 2
-    return found
+        square += (residual[k] / levers[k]) ** 2
+    return square
 
 
 @njit
@@ -93,7 +93,7 @@ def place_of_largest(system: System, residual: Array, first: int) -> str:
 
 @njit
 def above_round_off(residual: Array, terms: Array) -> bool:
-    """Whether something in a residual can be told from its round-off. terms: sizes [N] of what it is the sum of."""
+    """Whether some entry of a residual is above its round-off. terms: sums [N] of its terms' magnitudes."""
     above = False
     for k in range(residual.size):
         above |= abs(residual[k]) > ROUND_OFF * terms[k]

@@ -2,7 +2,7 @@
 
 The tangent then has a block of the riser and one of the soil and nothing beside them, so that each is its own Schur
 complement; and the soil's right-hand side is zero: so is its increment, and the riser's is that of its own band. No
-block is left out that is not zero, and what the soil's rows have left of a residual counts in Newton's test as ever.
+block is left out that is not zero, and the residual of the soil's rows counts in Newton's test as ever.
 """
 
 from __future__ import annotations
@@ -50,8 +50,8 @@ class RiserAboveSoil(PythonContext, LinearSolver):
 
     def solve(self, ksp: PETSc.KSP, b: PETSc.Vec, x: PETSc.Vec) -> None:
         """Called by PETSc."""
-        found = np.zeros(x.getLocalSize())
+        solution = np.zeros(x.getLocalSize())
         if self._rows > 0:
-            found[: self._rows] = self._factors.solve(np.array(b.array_r[: self._rows]))
-        x.array_w[:] = found
+            solution[: self._rows] = self._factors.solve(np.array(b.array_r[: self._rows]))
+        x.array_w[:] = solution
         ksp.setConvergedReason(PETSc.KSP.ConvergedReason.CONVERGED_RTOL)

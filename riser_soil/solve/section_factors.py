@@ -87,12 +87,12 @@ class SectionFactors:
 
     def schur_entries(self, number: IntArray) -> list[Entries]:
         """Entries of each section's Schur complement less D. number (rows,): of rows in the system of all borders."""
-        found, (first, inside, counts) = [], self.bands[:3]
+        entries, (first, inside, counts) = [], self.bands[:3]
         for s in np.flatnonzero(counts[:, 2]):
             rows = slice(first[s], first[s] + counts[s, 0])
             border, m = number[rows][inside[rows] < 0], counts[s, 2]
-            found.append((np.repeat(border, m), np.tile(border, m), self.bands.schur[s, :m, :m].ravel()))
-        return found
+            entries.append((np.repeat(border, m), np.tile(border, m), self.bands.schur[s, :m, :m].ravel()))
+        return entries
 
     def forward_eliminate(self, x: Array) -> None:
         """Condense a load x (rows,) of each section onto its border, in place."""
@@ -109,14 +109,14 @@ def coupled_apart(indptr: IntArray, indices: IntArray, values: Array, first: int
 
     first: first of this rank's rows; section (n,): section of each row, -1 for none.
     """
-    found = np.zeros(section.size, np.int64)
+    coupled = np.zeros(section.size, np.int64)
     for i in range(indptr.size - 1):
         own = section[first + i]
         for k in range(indptr[i], indptr[i + 1]):
             j = indices[k]
             if section[j] != own and values[k] != 0.0:
-                found[first + i] = found[j] = 1
-    return found
+                coupled[first + i] = coupled[j] = 1
+    return coupled
 
 
 @njit
@@ -276,11 +276,11 @@ def entries_between(indptr: IntArray, indices: IntArray, values: Array, first: i
     """
     own = number[first : first + indptr.size - 1]
     count = np.sum(np.diff(indptr)[own >= 0])
-    rows, columns, found = np.empty(count, np.int64), np.empty(count, np.int64), np.empty(count)
+    rows, columns, entries = np.empty(count, np.int64), np.empty(count, np.int64), np.empty(count)
     n = 0
     for i in np.flatnonzero(own >= 0):
         for k in range(indptr[i], indptr[i + 1]):
             if number[indices[k]] >= 0 and values[k] != 0.0:
-                rows[n], columns[n], found[n] = own[i], number[indices[k]], values[k]
+                rows[n], columns[n], entries[n] = own[i], number[indices[k]], values[k]
                 n += 1
-    return rows[:n], columns[:n], found[:n]
+    return rows[:n], columns[:n], entries[:n]

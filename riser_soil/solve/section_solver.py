@@ -72,20 +72,20 @@ class SectionSolver(PythonContext, LinearSolver):
         coupled = largest_of(comm, coupled_apart(*csr, first, self._section)) > 0
         if not all_of(comm, self._factors.factorise(csr, coupled[mine])):
             raise SingularError
-        kept = coupled | (self._section < 0)  # rows of the borders and the riser
-        number = np.where(kept, np.cumsum(kept) - 1, -1)
-        self._border_rows = np.flatnonzero(kept[mine])
+        border = coupled | (self._section < 0)  # rows of borders and riser
+        number = np.where(border, np.cumsum(border) - 1, -1)
+        self._border_rows = np.flatnonzero(border[mine])
         parts = [entries_between(*csr, first, number), *self._factors.schur_entries(number[mine])]
-        self._borders = _BorderSystem(comm, _joined(parts), int(np.count_nonzero(kept)))
+        self._borders = _BorderSystem(comm, _joined(parts), int(np.count_nonzero(border)))
 
-    def apply(self, pc: PETSc.PC, load: PETSc.Vec, found: PETSc.Vec) -> None:
+    def apply(self, pc: PETSc.PC, load: PETSc.Vec, solution: PETSc.Vec) -> None:
         """Solve for a load: forward elimination, the system of the borders and the riser, back substitution."""
         assert self._borders is not None
         x = np.array(load.array_r)
         self._factors.forward_eliminate(x)
         x[self._border_rows] = self._borders.solve(x[self._border_rows])
         self._factors.back_substitute(x)
-        found.array_w[:] = x
+        solution.array_w[:] = x
 
     def failed(self, ksp: PETSc.KSP) -> tuple[str, bool]:
         """No message, and whether another try may do: by factors of the whole matrix, until its pattern changes."""
@@ -140,10 +140,10 @@ def _section_of_rows(system: System, soil: SoilField) -> IntArray:
     """Number (n,) of the section that each row of the system belongs to, -1 for the others; collective."""
     numbering = system.numbering
     assert soil.section is not None
-    index, found = numbering.index[local(soil)], np.full(numbering.free, -1)
+    index, sections = numbering.index[local(soil)], np.full(numbering.free, -1)
     mine = soil.owned & (index >= 0)
-    found[index[mine]] = soil.section[mine]
-    return largest_of(system.comm, found)
+    sections[index[mine]] = soil.section[mine]
+    return largest_of(system.comm, sections)
 
 
 def _runs(section: IntArray) -> list[slice]:

@@ -72,7 +72,7 @@ class SnesLoop(Loop):
         f.array_w[:] = self._balance.residual(np.array(x.array_r))
 
     def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, jacobian: PETSc.Mat, p: PETSc.Mat) -> None:
-        """Assemble the tangent and choose its solver. A tangent that is left as it was keeps its factors."""
+        """Assemble the tangent and choose its solver. A tangent that is used again keeps its factors."""
         self._balance.tangent(np.array(x.array_r))
         snes.setKSP(self._tangents.next(self._f, self._balance))
 
@@ -129,8 +129,8 @@ class SnesLoop(Loop):
         self._create()
 
     def release(self) -> None:
-        """Let go of the matrix, in whose place another is to come. Factors go first and on all ranks at once; SNES
-        itself may be held longer by frames that an exception keeps, as numba's do on the rank that compiles a kernel.
+        """Free the matrix, which another one is to replace. Factors go first and on all ranks at once; SNES itself may
+        live longer in the frames of an exception, such as numba's on the rank that compiles a kernel.
         """
         self._tangents.drop()
         self._snes.reset()
@@ -147,7 +147,7 @@ class SnesLoop(Loop):
         self.release()
         self.linear.forget()
         self._options.close()
-        del self._balance  # which refers to this: what both hold is freed now, not some time later
+        del self._balance  # which refers to this: both are freed now, not by a later garbage collection
 
 
 def _ending(reason: int) -> str:

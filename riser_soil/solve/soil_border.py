@@ -52,15 +52,15 @@ def move_top(deformed: Array, top: TopMotion, border: Border) -> None:
 
 @njit
 def begin_border(soil: SoilData, border: Border) -> None:
-    """Write what the soil's own forces leave out of balance."""
-    found = np.dot(soil.stiffness, border.u[: soil.holding.size])
-    for i in range(found.size):
-        border.residual[i] = soil.holding[i] + found[i]
+    """Write the residual of the soil's own forces."""
+    forces = np.dot(soil.stiffness, border.u[: soil.holding.size])
+    for i in range(forces.size):
+        border.residual[i] = soil.holding[i] + forces[i]
 
 
 @njit
 def add_norm_of_soil(soil: SoilData, border: Border, sums: Array) -> None:
-    """Add the soil's residual to the norms, see `step_kernels.add_norms`."""
+    """Add the squares of the soil's residual to the first of the norms' sums."""
     for i in range(soil.holding.size):
         sums[0] += border.residual[i] * border.residual[i]
 
@@ -107,7 +107,7 @@ def add_terms(soil: SoilData, border: Border, sizes: Array, terms: Array) -> Non
 
 @njit
 def find_above(soil: SoilData, border: Border, above: BoolArray) -> None:
-    """Whether something in the soil's residual can be told from its round-off, or could before, above (1,)."""
+    """Set above (1,) where some entry of the soil's residual is above its round-off."""
     above[0] |= above_round_off(border.residual[: soil.holding.size], soil.terms)
 
 
@@ -147,7 +147,7 @@ class SoilBorder(Coupling):
         """How nodes (k,) of the top follow the reached dofs, from their present places."""
         top, reached = self._top, self._top.reached
         rows = np.full(top.size, HELD, dtype=np.int64)
-        rows[top.beside] = BEYOND
+        rows[top.unreached] = BEYOND
         rows[reached.dofs] = np.arange(len(reached.dofs))
         dofs = (3 * nodes[:, None] + np.arange(3)).ravel()
         by = np.ascontiguousarray(reached.compliance[dofs] @ reached.stiffness)

@@ -156,10 +156,10 @@ def _neutral_turns(system: System, line: LineField, state: State, least: float) 
 
 def _products(system: System, increments: Array) -> list[Array]:
     """The assembled matrix times increments (k, size)."""
-    found: list[Array] = [np.zeros(system.numbering.size) for _ in increments]
-    for met, increment in zip(found, increments, strict=True):
+    products: list[Array] = [np.zeros(system.numbering.size) for _ in increments]
+    for met, increment in zip(products, increments, strict=True):
         system.numbering.to_local(system.matrix.stored.times(system.numbering.to_global(increment)), met)
-    return found
+    return products
 
 
 def _one_dof_each(system: System, turns: Array) -> IntArray:

@@ -43,7 +43,7 @@ class Step:
 
     @classmethod
     def static(cls, before: State, seconds: float = math.inf) -> Step:
-        """One to equilibrium from an accepted state; seconds: see `Static`."""
+        """A step to equilibrium from an accepted state; seconds: that pass in it, in which rates flow."""
         return cls(Static(seconds), before, before.t, 0.0, None, np.zeros(before.u.size))
 
 

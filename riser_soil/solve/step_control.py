@@ -43,7 +43,7 @@ class Control(Protocol):
         ...
 
     def accept(self, easy: bool) -> None:
-        """Move on from a step that has been taken, with little effort or with much."""
+        """Count a step as done, which took few iterations or many."""
         ...
 
     def cut(self) -> bool:

@@ -44,7 +44,7 @@ class StepIteration:
         self.system, self.settings, self.iterations = system, settings, 0
         self._trial: StepTrial | None = None
         self._state: State | None = None  # of the unknowns that were tried last
-        self._forces_at: State | None = None  # the state of the forces found last
+        self._forces_at: State | None = None  # the state of the forces evaluated last
         self._adaptive: list[Adaptive] = with_role(system.model.parts, Adaptive)
         self._limited: list[Limited] = with_role(system.model.parts, Limited)
         self._elastic = ElasticShare(with_role(system.model.parts, Yielding))
@@ -83,9 +83,9 @@ class StepIteration:
 
     def _at(self, x: Array) -> State:
         """State of the unknowns x; the same object while x stays the same, so that parts need not look twice."""
-        found = np.zeros(self.system.numbering.size)
-        self.system.numbering.to_local(x, found)
-        u = self._step.with_prescribed(found)
+        increments = np.zeros(self.system.numbering.size)
+        self.system.numbering.to_local(x, increments)
+        u = self._step.with_prescribed(increments)
         if self._state is None or (u != self._state.u).any():
             self._state = self._step.state_at(u)
         return self._state
@@ -246,8 +246,9 @@ class StepIteration:
         self._x = self.system.numbering.to_global(self._trial.begun.u)
         guessed = any_of(self.system.comm, bool(self._x.any()))
         near = self.system.smooth and self._moves
-        answers = at_equilibrium or guessed  # one like round-off has an answer, too
-        self._convergence = Convergence(limits_of(self.settings, near, False, answers, step.scheme.step_over_trial))
+        done_at_start = at_equilibrium or guessed  # else a load as small as round-off moves the riser, too
+        limits = limits_of(self.settings, near, False, done_at_start, step.scheme.step_over_trial)
+        self._convergence = Convergence(limits)
         self._convergence.most = self.loop.max_iterations
 
     def residual(self, x: Array) -> Array:
@@ -266,7 +267,7 @@ class StepIteration:
         return self._elastic.length * y
 
     def note_step_length(self, part: float) -> None:
-        """Take note of the part of a step that a line search has found."""
+        """Record the part of a step that a line search has chosen."""
         self._elastic.length = part
 
     def _assemble(self, state: State) -> None:
@@ -291,9 +292,9 @@ class StepIteration:
             raise OutgrownError
 
     def judge(self, x: Array, f: Array, small: bool | None = None) -> str:
-        """How the iteration ends at unknowns with the residual f, else ITERATING; OutgrownError where forces are found
-        that the tangent has no places for. What was judged last is what was found. small: whether the residual is, by
-        tolerances beside the settings'; None where these decide. Collective.
+        """How the iteration ends at unknowns with the residual f, else ITERATING; OutgrownError where forces act
+        that the tangent has no places for. The unknowns judged last are the solution. small: whether the residual is,
+        by tolerances beside the settings'; None where these decide. Collective.
         """
         self._x, self._f = x, f
         self._convergence.add(self._norm.of(f))
@@ -312,7 +313,7 @@ class StepIteration:
         return TOO_MANY if self._elastic.in_vain else ITERATING
 
     def _at_round_off(self) -> bool:
-        """Whether nothing in the residual can be told from its round-off; collective. Leaves another matrix behind."""
+        """Whether all of the residual may be round-off; collective. Overwrites the matrix."""
         magnitudes = self.system.magnitudes(self._at(self._x), self._step.weights)
         sizes = self.system.numbering.sizes_to_global(magnitudes)
         return not any_of(self.system.comm, bool(above_round_off(self._f, sizes)))
@@ -321,7 +322,7 @@ class StepIteration:
         """Share of the residual that the next linear system may leave.
 
         A fall by a factor f promises a next one by f² (Eisenstat & Walker, SIAM J. Sci. Comput. 17, 1996, choice 2,
-        from memory); what is left stays below that, or below Newton's tolerance.
+        from memory); the linear residual stays below that, or below Newton's tolerance.
         """
         convergence = self._convergence
         norm = convergence.norms[-1]
@@ -338,7 +339,7 @@ class StepIteration:
         return self.settings.tolerance / ratio * self._norm.in_play(self._forces)
 
     def negligible(self) -> float:
-        """Residual [N] that needs no answer: below what Newton's method may leave; collective."""
+        """Residual [N] that need not be reduced: it is below Newton's tolerance; collective."""
         return BELOW * self._tolerated
 
     def _reason(self, why: str) -> str:
@@ -346,7 +347,7 @@ class StepIteration:
         return failure_text(why, self._convergence.norms, self._norm.largest(self._f))
 
     def state(self) -> Saved:
-        """What is kept of linear systems."""
+        """State of the linear solver."""
         return under("linear", self.loop.state())
 
     def restore(self, saved: Saved) -> None:

@@ -1,4 +1,4 @@
-"""Kernels of Newton's method for a time step of lines and bodies: rates, residual, norms, band, its answer.
+"""Kernels of Newton's method for a time step of lines and bodies: rates, residual, norms, band, Newton update.
 
 These are what every riser has; those of its parts are in `part_kernels`. `packed_line` binds both to their arguments,
 so that each is compiled once for all risers.
@@ -139,14 +139,14 @@ def set_zero(values: Array) -> None:
 @njit
 def begin_with(bulk: Array, K: Array) -> None:
     """Write the element matrices of all but contact."""
-    found, kept = K.reshape(K.size), bulk.reshape(K.size)
+    target, source = K.reshape(K.size), bulk.reshape(K.size)
     for k in range(K.size):
-        found[k] = kept[k]
+        target[k] = source[k]
 
 
 @njit
 def write_terms(workspace: MatrixWorkspace, dofs: Dofs) -> None:
-    """Write the terms that the residual is made of, see `residual_norm`; K: at held rates."""
+    """Write the terms that the residual is made of, see `residual_norm`; K: at fixed rates."""
     terms = dofs.terms.reshape(dofs.terms.size)
     terms[:] = 0.0
     add_terms(workspace, dofs)
@@ -161,7 +161,7 @@ def add_terms(workspace: MatrixWorkspace, dofs: Dofs) -> None:
 
 @njit
 def find_above(dofs: Dofs, above: BoolArray) -> None:
-    """Whether something in the residual can be told from its round-off, or could before, above (1,)."""
+    """Set above (1,) where some entry of the residual is above its round-off."""
     n = dofs.terms.size
     above[0] |= above_round_off(dofs.residual.reshape(n), dofs.terms.reshape(n))
 
@@ -175,8 +175,8 @@ def fill(workspace: MatrixWorkspace, dofs: Dofs) -> None:
     for e in range(K.shape[0]):
         for i in range(len(workspace.band) + 1):
             add_multiple(ab, (e * ndof + i) * width + b - i, 1.0, K, (e * n + i) * n, workspace.band + ONE)
-    for k, held in enumerate(fixed.ravel()):
-        if held:
+    for k, is_fixed in enumerate(fixed.ravel()):
+        if is_fixed:
             ab[k] = 0.0
             for i in range(max(0, k - b), min(fixed.size, k + b + 1)):
                 ab[i, k - i + b] = 0.0
@@ -192,7 +192,7 @@ def factorise(workspace: MatrixWorkspace, failure: IntArray) -> None:
 
 @njit
 def improve(workspace: MatrixWorkspace, step: StepData, dofs: Dofs) -> None:
-    """Take what the factorised tangent answers to the residual off the increments."""
+    """Newton update u -= K⁻¹ r of the free dofs."""
     size = dofs.residual.size
     fixed, change, u = dofs.fixed.reshape(size), dofs.residual.reshape(size), step.u.reshape(size)
     banded.solve(workspace.ab, workspace.pivots, change, workspace.band)

@@ -75,7 +75,7 @@ class StepResults:
         return section_input(line, placed(line, state), residual, viscous, self._on_ends(line, state))
 
     def _on_ends(self, line: Line, state: State) -> Array | None:
-        """Loads on the nodes at the line's ends, see `SectionInput`."""
+        """Loads on the two nodes at the line's ends, which are no section forces."""
         return on_ends(line, state, nodal_residual(line, acting_on(line, self.system.model.parts), state))
 
     def contact_results(self, contact: RiserContact, state: State) -> Array:

@@ -26,29 +26,29 @@ LARGE = 4000  # unknowns from which on kept factors are cheaper than new ones
 ALONE = 1e-5  # share of the residual that the response of a tangent by itself may leave, beside Newton's iterations
 
 
-def linear_solver(system: System, asked: str, by_options: bool) -> LinearSolver:
-    """The solver that is asked for: "direct", "kept", "iterative", or "auto", by which sections are solved one by one;
-    what there is nothing for is solved directly. by_options: PETSc's own, as the user's options name one.
+def linear_solver(system: System, kind: str, by_options: bool) -> LinearSolver:
+    """Linear solver of a kind: "direct", "kept", "iterative", or "auto", by which sections are solved one by one; a
+    direct one where the system has nothing for its kind. by_options: PETSc's own, as the user's options name one.
     """
     comm: Any = system.comm
     if by_options:
         return PetscSolver()
-    solid = solid_of(system) if asked == "iterative" else None
+    solid = solid_of(system) if kind == "iterative" else None
     if solid is not None:
         return IterativeSolver(system, solid)
-    sections = sections_of(system) if asked == "auto" else None
+    sections = sections_of(system) if kind == "auto" else None
     if sections is not None:
         return SectionSolver(system, sections, Workspace())
-    if _keeps_factors(system, asked):
+    if _keeps_factors(system, kind):
         return KeptFactors(comm, system.symmetric, Workspace())
     return DirectSolver(system, Workspace())
 
 
-def _keeps_factors(system: System, asked: str) -> bool:
-    """Whether factors are kept from one tangent to the next: as asked ("kept", "direct"), or where that is cheaper."""
-    if asked == "direct" or band_of(system) is not None:
+def _keeps_factors(system: System, kind: str) -> bool:
+    """Whether factors are kept from one tangent to the next: by "kept", or "auto" where that is cheaper."""
+    if kind == "direct" or band_of(system) is not None:
         return False
-    return asked == "kept" or system.numbering.free >= LARGE
+    return kind == "kept" or system.numbering.free >= LARGE
 
 
 class PetscSolver(LinearSolver):
@@ -69,9 +69,9 @@ class TangentSolver:
     more.
     """
 
-    def __init__(self, system: System, asked: str, given: Given) -> None:
+    def __init__(self, system: System, kind: str, given: Given) -> None:
         self._system, self._given, self.used, self.again = system, given, False, False
-        self.solver = linear_solver(system, asked, given.linear_solver)
+        self.solver = linear_solver(system, kind, given.linear_solver)
 
     def attach(self, ksp: PETSc.KSP) -> None:
         """Set a KSP up for the matrix that the system has now."""
@@ -92,7 +92,7 @@ class TangentSolver:
         return ksp
 
     def solve(self, f: PETSc.Vec, x: PETSc.Vec, balance: Balance) -> bool:
-        """Write what the present tangent answers to a residual by itself; whether there is an answer."""
+        """Write x = K⁻¹ f by the present tangent, outside Newton's iterations; whether that could be solved."""
         ksp = self._choose(f, balance)
         ksp.setOperators(self._system.matrix.mat)
         self._tighten(ALONE)

@@ -92,7 +92,7 @@ class TimeStepper:
         self._momentum_correcting: list[MomentumCorrecting] = with_role(parts, MomentumCorrecting)
         self._renewing: list[Renewing] = with_role(parts, Renewing)
         self._geometry = UpdatedGeometry(system)
-        self._patterns_held: Patterns = {}  # of the matrix in which lines are held
+        self._patterns_under_fixed_lines: Patterns = {}  # of the matrix in which lines are fixed
         if isinstance(before, State):
             self._begin(before)
         else:
@@ -274,7 +274,7 @@ class TimeStepper:
                 continue
             if self.scheme.dynamic:
                 given = system.comm, system.model, self.before.t, self.newton.settings, system.clock
-                balance_under_fixed_lines(*given, self._patterns_held)
+                balance_under_fixed_lines(*given, self._patterns_under_fixed_lines)
                 self.newton.renew()  # the balance has chosen patterns of its own
             part.lose(self.energy.total - system.energy(self.before).total)
             self._forces = system.forces(self.before)
@@ -320,11 +320,11 @@ class TimeStepper:
         owners: dict[str, Stateful | None] = {"predictor": self._past, "mass": self._mass, "error": self._error}
         owners["gain"] = self._gain
         owners["newton"] = self.newton
-        kept = {"before": self.before, "forces": self._forces, "history": self._history, "energy": self.energy}
+        records = {"before": self.before, "forces": self._forces, "history": self._history, "energy": self.energy}
         if self.now is not self.before:
-            kept["now"] = self.now
+            records["now"] = self.now
         saved = gathered({name: owner for name, owner in owners.items() if owner is not None})
-        for name, record in kept.items():
+        for name, record in records.items():
             saved |= under(name, values_of(record) if record is not None else {})
         return saved
 

@@ -2,8 +2,8 @@
 
 Strain, forces and areas of contact of a step are taken on one geometry, about which it is linear. With that of the
 step's start the forces on the line would lag by a step. So it is the one to which the motion of the last steps would
-lead if it continued, and where the solution is far off that, the solution's: what is left is of second order in the
-step while the motion is smooth.
+lead if it continued, and where the solution is far off that, the solution's: the remaining error is of second order in
+the step while the motion is smooth.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from riser_soil.solve.step import NotConvergedError, Solution, Step
 if TYPE_CHECKING:
     from riser_soil.solve.newton import Newton
 
-LAG = 1e-2  # of a facet's area, by which a solution may be off the geometry that it is found on
+LAG = 1e-2  # of a facet's area, by which a solution may be off the geometry that it is solved on
 MOST_SOLUTIONS = 8
 
 
@@ -45,17 +45,17 @@ class UpdatedGeometry:
         """Solve a step on the predicted geometry, then on that of the solution, while they are more than `LAG` apart;
         NotConvergedError if they don't come together. Forces are in balance on the last geometry, which stays.
         """
-        found = newton.solve(step)
+        solution = newton.solve(step)
         if not self._parts:
-            return found
+            return solution
         for _ in range(MOST_SOLUTIONS):
-            if (lag := self._lag(found.state)) <= LAG:
-                return found
-            self._place(found.state)
-            again = newton.solve(replace(step, guess=found.state.u), refined=True)
-            found = replace(again, iterations_before=found.iterations)
+            if (lag := self._lag(solution.state)) <= LAG:
+                return solution
+            self._place(solution.state)
+            again = newton.solve(replace(step, guess=solution.state.u), refined=True)
+            solution = replace(again, iterations_before=solution.iterations)
         raise NotConvergedError(
-            f"the soil's surface is off the geometry that its forces are found on: a facet's area by {lag:.2g} of it"
+            f"the soil's surface is off the geometry that its forces are computed on: a facet's area by {lag:.2g} of it"
         )
 
     def _lag(self, state: State) -> float:

@@ -149,7 +149,7 @@ def test_nan_and_all_digits_survive(tmp_path: Path) -> None:
 
 
 def test_what_is_left_out_takes_no_workspace(tmp_path: Path) -> None:
-    file = SeriesFile(tmp_path / "results.nc", {"": ARC}, "t", "0", left_out={"": {"curvature", "moment_vector"}})
+    file = SeriesFile(tmp_path / "results.nc", {"": ARC}, "t", "0", unrecorded={"": {"curvature", "moment_vector"}})
     file.begin_stage("only")
     file.record(a_row(0.0))
     file.flush()

@@ -98,11 +98,11 @@ def test_a_second_run_factorises_nothing(
     folder: Path, anew: tuple[Array, Array], factorised: list[Compliance], capfd: pytest.CaptureFixture[str]
 ) -> None:
     first = compliance()
-    assert not first.kept
+    assert not first.on_disk
     assert_same(answers(first, 0, 2), anew)
     assert factorised == [first]
     second = compliance()
-    assert second.kept
+    assert second.on_disk
     assert_same(answers(second, 0, 2), anew)
     assert factorised == [first]
     assert [path.suffix for path in folder.glob("*/*")] == [".columns"] * 2
@@ -144,7 +144,7 @@ def test_runs_at_once_do_not_disturb_each_other(
 def test_another_law_or_mesh_has_another_compliance(other: Mapping, folder: Path, factorised: list[Compliance]) -> None:
     answers(compliance(), 0)
     another = compliance(other)
-    assert not another.kept
+    assert not another.on_disk
     answers(another, 0)
     assert len(factorised) == len(list(folder.iterdir())) == 2
 
@@ -153,18 +153,18 @@ def test_another_riser_on_the_same_soil_has_the_same(folder: Path) -> None:
     answers(compliance(), 0)
     mapping = scene()
     mapping["contact"] = {"method": "surface", "smoothing": 1e-3}
-    assert compliance(mapping).kept
+    assert compliance(mapping).on_disk
 
 
 def test_what_decides_the_last_digits_is_part_of_the_name(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     answers(compliance(), 0)
     with monkeypatch.context() as patch:
         patch.setenv("OMP_NUM_THREADS", "3")
-        assert not compliance().kept
+        assert not compliance().on_disk
     with monkeypatch.context() as patch:
         patch.setattr(kept_compliance, "FORMAT", kept_compliance.FORMAT + 1)
-        assert not compliance().kept
-    assert compliance().kept
+        assert not compliance().on_disk
+    assert compliance().on_disk
 
 
 def flip_a_bit(file: Path) -> None:
@@ -219,7 +219,7 @@ def test_a_run_goes_on_where_nothing_can_be_kept(
 def test_a_disk_that_is_nearly_full_is_left_alone(
     folder: Path, anew: tuple[Array, Array], monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(kept_compliance, "LEFT", 1 << 60)
+    monkeypatch.setattr(kept_compliance, "FREE_DISK", 1 << 60)
     assert_same(answers(compliance(), 0, 2), anew)
     assert not list(folder.rglob("*.columns"))
     assert len(capfd.readouterr().err.splitlines()) == 1
@@ -229,8 +229,8 @@ def test_memory_has_no_more_than_some_columns(
     folder: Path, anew: tuple[Array, Array], monkeypatch: pytest.MonkeyPatch, factorised: list[Compliance]
 ) -> None:
     """Those that are not there any more are solved for again, with the same factors and bits."""
-    monkeypatch.setattr(kept_compliance, "LEFT", 1 << 60)
-    monkeypatch.setattr("riser_soil.soil.compliance.HELD", 1)
+    monkeypatch.setattr(kept_compliance, "FREE_DISK", 1 << 60)
+    monkeypatch.setattr("riser_soil.soil.compliance.MEMORY", 1)
     kept = compliance()
     for _ in range(2):
         assert_same(answers(kept, 0, 2), anew)
@@ -248,11 +248,11 @@ def test_the_soils_not_used_for_longest_make_workspace(
     again = places.index(next(folder.iterdir()))  # the one that would go first, were it not used again
     answers(compliance(soils[again]), 0)
     each = next(folder.glob("*/*")).stat().st_size
-    monkeypatch.setattr(kept_compliance, "MOST", 3 * each + each // 2)
+    monkeypatch.setattr(kept_compliance, "DISK", 3 * each + each // 2)
     answers(compliance(), 0)
     oldest = 1 if again == 0 else 0
-    assert [compliance(soil).kept for soil in soils] == [n != oldest for n in range(3)]
-    monkeypatch.setattr(kept_compliance, "MOST", each + each // 2)
+    assert [compliance(soil).on_disk for soil in soils] == [n != oldest for n in range(3)]
+    monkeypatch.setattr(kept_compliance, "DISK", each + each // 2)
     assert capfd.readouterr().err == ""
     assert_same(answers(compliance(), 0, 2), anew)
     assert len(list(folder.glob("*/*"))) == 1
@@ -266,7 +266,7 @@ def test_nothing_is_kept_or_read_where_it_is_switched_off(
     kept = sorted(folder.rglob("*"))
     monkeypatch.setenv(SWITCH, "off")
     of_program = compliance()
-    assert not of_program.kept
+    assert not of_program.on_disk
     answers(of_program, 0, 2)
     assert len(factorised) == 2
     assert sorted(folder.rglob("*")) == kept

@@ -140,7 +140,7 @@ def test_a_force_beside_counts_as_long_as_it_is_there() -> None:
     assert condensed is not None
     size = first_step("surface").assembly.size
     pressed, rest = Forces.zeros(size), State.at_rest(0.0, size)
-    condensed.top.own(pressed.end)[condensed.top.beside[5]] = 1.0
+    condensed.top.own(pressed.end)[condensed.top.unreached[5]] = 1.0
     condensed.residual(rest, pressed)
     assert condensed.outgrown
     condensed.residual(rest, Forces.zeros(size))

@@ -11,7 +11,7 @@ from petsc4py import PETSc
 
 from riser_soil.core.arrays import Array
 from riser_soil.core.factor_memory import Workspace
-from riser_soil.solve.kept_factors import SEEN, KeptFactors
+from riser_soil.solve.kept_factors import FIRST_RATE, KeptFactors
 
 SIDE = 14  # cells along each edge of a cube: factors of fewer are worth too few solves by the counts of MUMPS 5.7
 TOLERANCE = 1e-8
@@ -105,7 +105,7 @@ def test_factors_that_do_not_do_are_made_anew_at_once(symmetric: Solver) -> None
     changed = np.sqrt(np.outer(scale, scale)) * K
     assert residual(changed, symmetric.solution(changed, B)) <= TOLERANCE
     assert symmetric.kept.factorisations == 2
-    assert symmetric.kept.iterations == 1 + SEEN + 1
+    assert symmetric.kept.iterations == 1 + FIRST_RATE + 1
 
 
 def test_factors_are_made_anew_once_a_solve_costs_more_than_the_mean(symmetric: Solver) -> None:

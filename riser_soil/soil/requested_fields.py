@@ -1,4 +1,4 @@
-"""Fields of the soil that a scene asks for by name: stress, strain and plastic strain as tensors, the law's histories.
+"""Fields of the soil that a scene requests by name: stress, strain and plastic strain as tensors, the law's histories.
 
 Stress is what the law gives, beyond the water pressure at rest. Effective stress is the same where the law's stress is
 effective, or what remains of it beyond the pore pressure that is one of its histories. Strain is the sum of the
@@ -28,14 +28,14 @@ Law = Callable[[Array, Array], Formula]
 
 
 @dataclass(frozen=True)
-class AskedFields:
-    """Names that the scene asks for, and the laws of its soil."""
+class RequestedFields:
+    """Names that the scene requests, and the laws of its soil."""
 
     names: tuple[str, ...]
     laws: tuple[SoilLaw, ...] = ()
 
-    def kept_by(self, law: Law) -> Law:
-        """The law, with the strain among its histories where that is needed."""
+    def with_histories(self, law: Law) -> Law:
+        """The law, with the strain among its histories where a field needs that."""
         if not {*OF_STRAIN} & {*self.names}:
             return law
         return lambda depth, initial: WithStrain(law(depth, initial))
@@ -43,8 +43,8 @@ class AskedFields:
     def of_law(self, columns: Sequence[str]) -> FieldsOfLaw:
         """Places of the fields in a history of such columns. Raises SceneError for what is not there."""
         own = _histories(columns)
-        asked = [name for each in self.names for name in (own if each == HISTORIES else [each])]
-        for name in asked:
+        names = [name for each in self.names for name in (own if each == HISTORIES else [each])]
+        for name in names:
             if name in own and name in (*TENSORS, HISTORIES, *choices()):
                 raise SceneError(f"output.soil_fields: {name}, a history of the law, is a field, too; rename it")
             if name in choices():
@@ -52,25 +52,26 @@ class AskedFields:
             if name not in TENSORS and name not in own:
                 known = f"of this soil there are {', '.join((*TENSORS, HISTORIES, *own))}"
                 raise SceneError(f"output.soil_fields: there is no {name}: {known}; correct or remove it")
-        if EFFECTIVE in asked:
+        if EFFECTIVE in names:
             self._check_effective(columns)
-        return FieldsOfLaw(tuple(dict.fromkeys(asked)), own, tuple(columns))
+        return FieldsOfLaw(tuple(dict.fromkeys(names)), own, tuple(columns))
 
     def _check_effective(self, columns: Sequence[str]) -> None:
-        untold = dict.fromkeys(law.kind for law in self.laws if not law.knows_effective_stress(columns))
-        if untold:
+        kinds = dict.fromkeys(law.kind for law in self.laws if not law.knows_effective_stress(columns))
+        if kinds:
             raise SceneError(
-                f"output.soil_fields: effective_stress is not known of {' and '.join(untold)}: its stress is total, "
+                f"output.soil_fields: effective_stress is not known of {' and '.join(kinds)}: its stress is total, "
                 "and nothing says what share the pore water bears; ask for stress, or take a law with a history "
                 f"{PORE_PRESSURE}"
             )
 
 
-NO_FIELDS = AskedFields(())
+NO_FIELDS = RequestedFields(())
 
 
-def fields_of(names: Sequence[str], laws: Sequence[SoilLaw]) -> AskedFields:
-    return AskedFields(tuple(names), tuple(laws))
+def fields_of(names: Sequence[str], laws: Sequence[SoilLaw]) -> RequestedFields:
+    """Fields of these names in soil of some laws."""
+    return RequestedFields(tuple(names), tuple(laws))
 
 
 def _histories(columns: Sequence[str]) -> dict[str, slice]:

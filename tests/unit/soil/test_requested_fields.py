@@ -16,12 +16,12 @@ from riser_soil.core.part import State
 from riser_soil.errors import SceneError
 from riser_soil.scene.reader import scene_from_mapping
 from riser_soil.soil import mandel
-from riser_soil.soil.asked_fields import fields_of
 from riser_soil.soil.drucker_prager import DruckerPrager
 from riser_soil.soil.imported_law import ImportedLaw
 from riser_soil.soil.law import SoilLaw
 from riser_soil.soil.linear_elastic import LinearElastic
 from riser_soil.soil.mirror import Mirror, Unfolding
+from riser_soil.soil.requested_fields import fields_of
 from riser_soil.soil.soil import Soil
 from riser_soil.soil.von_mises import VonMises
 from tests.support.said import line_with, telling
@@ -51,7 +51,7 @@ def take(soil: Soil, u: Array) -> None:
 
 def tensors(soil: Soil, name: str) -> Array:
     """(nc, 3, 3)."""
-    values = soil.output_fields().asked[name]
+    values = soil.output_fields().requested[name]
     assert values.shape == (len(soil.output_mesh().cells), 9)
     return values.reshape(-1, 3, 3)
 
@@ -60,12 +60,12 @@ def tensors(soil: Soil, name: str) -> Array:
 def test_stress_and_strain_of_a_column_under_its_weight(kind: str) -> None:
     """At rest sideways: σz = -γ z, σh = ν/(1 - ν) σz, εz = σz (1 + ν)(1 - 2ν)/((1 - ν) E); nothing is plastic."""
     law = LinearElastic(kind="linear-elastic", E=E, nu=NU)
-    asked = fields_of(("stress", "strain", "plastic_strain"), (law,))
-    options: dict[str, Any] = {"level": 0.0, "unit_weight": GAMMA, "start": "unstressed", "fields": asked}
+    requested = fields_of(("stress", "strain", "plastic_strain"), (law,))
+    options: dict[str, Any] = {"level": 0.0, "unit_weight": GAMMA, "start": "unstressed", "fields": requested}
     column = Soil(small_block(kind), law.at_points, **options)
     Bench(column, np.zeros(column.field.size, dtype=bool)).step(np.zeros(column.field.size))
     mesh = column.output_mesh()
-    stress, strain, plastic = (tensors(column, name) for name in asked.names)
+    stress, strain, plastic = (tensors(column, name) for name in requested.names)
     down = GAMMA * mesh.points[mesh.cells].mean(axis=1)[:, 2]
     diagonal = np.array([NU / (1.0 - NU), NU / (1.0 - NU), 1.0])
     np.testing.assert_allclose(stress, down[:, None, None] * np.diag(diagonal), atol=1e-6 * GAMMA)
@@ -103,7 +103,7 @@ def test_effective_stress_is_what_the_law_says_beyond_its_pore_pressure() -> Non
     u = sheared(clay, 0.02).u.reshape(-1, 3)
     u[:, 2] = 1e-3 * clay.field.points[:, 2]
     take(clay, u)
-    fields = clay.output_fields().asked
+    fields = clay.output_fields().requested
     assert set(fields) == {"stress", "effective_stress", "pressure", "preconsolidation", "pore_pressure"}
     total, effective = (fields[name].reshape(-1, 3, 3) for name in ("stress", "effective_stress"))
     pore = fields["pore_pressure"]
@@ -115,13 +115,13 @@ def test_effective_stress_is_what_the_law_says_beyond_its_pore_pressure() -> Non
 
 def test_the_stress_of_sand_is_effective() -> None:
     sand = soil(SAND, "stress", "effective_stress")
-    fields = sand.output_fields().asked
+    fields = sand.output_fields().requested
     assert np.array_equal(fields["stress"], fields["effective_stress"])
 
 
-def test_no_fields_are_there_unless_asked_for() -> None:
+def test_there_are_no_fields_unless_requested() -> None:
     clay = soil(CLAY)
-    assert not clay.output_fields().asked
+    assert not clay.output_fields().requested
     assert not any(name.startswith("strain") for name in clay.law.columns)
 
 
@@ -161,10 +161,10 @@ def scene(**changed: Any) -> Mapping:
 
 
 def test_a_scene_asks_for_them_and_needs_soil(tmp_path: Path) -> None:
-    asked = {"soil_fields": ["strain", "histories"]}
-    made = scene_from_mapping(scene(output=asked))
+    requested = {"soil_fields": ["strain", "histories"]}
+    made = scene_from_mapping(scene(output=requested))
     assert made.output.soil_fields == ("strain", "histories")
-    without = scene(output=asked)
+    without = scene(output=requested)
     del without["soil"]
     with pytest.raises(SceneError, match=telling("output.soil_fields", "no soil")):
         scene_from_mapping(without)
