@@ -8,96 +8,82 @@ L psi(r - d(x)) of the law, so the tangent is its Hessian.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.bodies.body import MovingBody, add_tangent_at, add_to_dofs, posture, way_by_increments
-from riser_soil.contact.along_step import work_at
+from riser_soil.bodies.body import MovingBody, Posture, add_tangent_at, add_to_dofs, posture, way_by_increments
+from riser_soil.contact.along_step import OverStep, keep_history, over_step
 from riser_soil.contact.seabed_kernels import by_position
-from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.arrays import Array
+from riser_soil.core.bound import call_each
+from riser_soil.core.compiled import njit
 from riser_soil.core.part import State, Traits, Weights
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.configuration import Maps, SpatialConfiguration
 from riser_soil.riser.line_part import CompiledPart
 from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent, add_work, keep
 from riser_soil.riser.vectors import add, cross, dot, matrix, matscale, matvec, scale, vecmat, vector, write
-from riser_soil.seabed.compiled_law import answer, may_act
-from riser_soil.seabed.grounds import Ground, distance_at
+from riser_soil.seabed.grounds import Ground
 from riser_soil.seabed.law import NormalLaw
-
-
-class FoundAtPoints(NamedTuple):
-    """What was found last at the points: whether each touches (n,); arm from the body's origin and place [m], normal
-    (n, 3); penetration, force per length, its slope and energy stored (n,); the law's history after the step (n, nh).
-    """
-
-    touches: BoolArray
-    arm: Array
-    place: Array
-    normal: Array
-    penetration: Array
-    force: Array
-    slope: Array
-    stored: Array
-    after: Array
+from riser_soil.seabed.points import SeabedPoints, find_penetrations, seabed_points
 
 
 class BodyContactData(NamedTuple):
-    """A `BodyContact`: points (n, 3) in body axes, radius and length that each stands for [m], memory (n, nh), the
-    kernel data of ground and law, and the law's reach; workspace (nh,) for a history.
+    """A `BodyContact`: points (n, 3) in body axes and length that each stands for [m].
+
+    As found last: arms (n, 3) of the points from the body's origin [m] and what the seabed does there; the same where
+    the step began; the law over the step.
     """
 
     points: Array
-    radius: float
     length: float
-    memory: Array
-    ground: Any
-    law: Any
-    reach: float
-    found: FoundAtPoints
-    after: Array
+    arm: Array
+    here: SeabedPoints
+    began: SeabedPoints
+    over_step: OverStep
+
+
+@njit
+def _place(points: Array, at: Posture, arm: Array, place: Array) -> None:
+    """Write arms and places of points (n, 3) in a posture of the body."""
+    for p in range(len(points)):
+        way = matvec(at.R, vector(points[p]))
+        write(way, arm[p])
+        write(add(at.x, way), place[p])
 
 
 @add_forces.of(BodyContactData)
 def _press(part: BodyContactData, at: SpatialConfiguration, out: LineForces) -> None:
-    here, found = posture(at), part.found
-    for p in range(part.points.shape[0]):
-        arm = matvec(here.R, vector(part.points[p]))
-        place = add(here.x, arm)
-        value, normal, _ = distance_at(part.ground, place)
-        write(arm, found.arm[p])
-        write(place, found.place[p])
-        write(normal, found.normal[p])
-        found.penetration[p] = part.radius - value
-        found.touches[p] = may_act(part.law, found.penetration[p], part.memory[p])
-        found.force[p], found.slope[p], found.stored[p] = 0.0, 0.0, 0.0
-        if found.touches[p]:
-            found.force[p], found.slope[p], found.stored[p] = answer(
-                part.law, found.penetration[p], part.memory[p], found.after[p]
-            )
-            force = scale(-part.length * found.force[p], normal)
-            add_to_dofs(out.end[0], force, vecmat(cross(arm, force), here.H))
+    body, here = posture(at), part.here
+    _place(part.points, body, part.arm, here.at.place)
+    find_penetrations(here)
+    call_each(here.answer)
+    for p in range(len(part.points)):
+        if here.law.acts[p]:
+            force = scale(-part.length * here.law.force[p], vector(here.at.gradient[p]))
+            add_to_dofs(out.end[0], force, vecmat(cross(vector(part.arm[p]), force), body.H))
 
 
 @add_tangent.of(BodyContactData)
 def _add_tangent_of_contact(
     part: BodyContactData, at: SpatialConfiguration, maps: Maps, weights: Weights, K: Array
 ) -> None:
-    here, found = posture(at), part.found
+    body, law, ground = posture(at), part.here.law, part.here.at
     Rn, Theta = matrix(at.Rn[0]), vector(at.Theta[0])
-    for p in range(part.points.shape[0]):
-        if found.touches[p]:
-            _, normal, bend = distance_at(part.ground, vector(found.place[p]))
-            by_place = matscale(part.length, by_position(found.force[p], found.slope[p], normal, bend))
-            force = scale(-part.length * found.force[p], normal)
-            add_tangent_at(K[0], 1.0, here, Rn, Theta, vector(found.arm[p]), force, by_place)
+    call_each(part.here.write_hessians)
+    for p in range(len(part.points)):
+        if law.acts[p]:
+            normal, bend = vector(ground.gradient[p]), matrix(ground.hessian[p])
+            by_place = matscale(part.length, by_position(law.force[p], law.slope[p], normal, bend))
+            force = scale(-part.length * law.force[p], normal)
+            add_tangent_at(K[0], 1.0, body, Rn, Theta, vector(part.arm[p]), force, by_place)
 
 
 @add_energy.of(BodyContactData)
 def _add_stored(part: BodyContactData, at: SpatialConfiguration, energy: Array) -> None:
-    for p in range(part.points.shape[0]):
-        energy[2] += part.length * part.found.stored[p]
+    for stored in part.here.law.stored:
+        energy[2] += part.length * stored
 
 
 @add_work.of(BodyContactData)
@@ -106,33 +92,24 @@ def _add_lost(part: BodyContactData, first: SpatialConfiguration, last: SpatialC
     `SeabedContact`; what that force takes beyond the work of the law along the step is the time scheme's. Its work is
     that of the increments, as in the equations of motion.
     """
-    began, found = posture(first), part.found
-    for p in range(part.points.shape[0]):
-        place = add(began.x, matvec(began.R, vector(part.points[p])))
-        value, _, _ = distance_at(part.ground, place)
-        before = part.radius - value
-        touched = may_act(part.law, before, part.memory[p])
-        if not (touched or found.touches[p]):
-            continue
-        stored = answer(part.law, before, part.memory[p], part.after)[2] if touched else 0.0
-        way = way_by_increments(first, last, vector(found.arm[p]))
-        taken, gained = -found.force[p] * dot(vector(found.normal[p]), way), found.stored[p] - stored
-        by_law = gained
-        if part.memory.shape[1] > 0:
-            by_law = work_at(part.law, part.reach, before, found.penetration[p], part.memory[p], part.after)
-        work[0] += part.length * (taken - gained)
-        work[3] += part.length * (taken - by_law)
+    here, began = part.here, part.began
+    _place(part.points, posture(first), np.empty(part.arm.shape), began.at.place)
+    find_penetrations(began)
+    call_each(began.answer)
+    call_each(part.over_step.write_work)
+    for p in range(len(part.points)):
+        way = way_by_increments(first, last, vector(part.arm[p]))
+        extracted = -here.law.force[p] * dot(vector(here.at.gradient[p]), way)
+        gained = here.law.stored[p] - began.law.stored[p]
+        by_law = part.over_step.work[p] if part.over_step.write_work.rows.size > 0 else gained
+        work[0] += part.length * (extracted - gained)
+        work[3] += part.length * (extracted - by_law)
 
 
 @keep.of(BodyContactData)
-def _keep_memory(part: BodyContactData, at: SpatialConfiguration) -> None:
+def _keep_history(part: BodyContactData, at: SpatialConfiguration) -> None:
     """The law's history after the step."""
-    found, memory = part.found, part.memory
-    for p in range(memory.shape[0] if memory.shape[1] > 0 else 0):
-        if not found.touches[p]:
-            answer(part.law, found.penetration[p], memory[p], found.after[p])
-        for k in range(memory.shape[1]):
-            memory[p, k] = found.after[p, k]
+    keep_history(part.over_step, part.here)
 
 
 class BodyContact(CompiledPart):
@@ -160,18 +137,14 @@ class BodyContact(CompiledPart):
         return self.length / len(self.points)
 
     def make_kernel_data(self) -> BodyContactData:
-        n, memory = len(self.points), self.memory
-        arm, place, normal = (np.zeros((n, 3)) for _ in range(3))
-        penetration, force, slope, stored = (np.zeros(n) for _ in range(4))
-        answered = penetration, force, slope, stored, np.zeros(memory.shape)
-        found = FoundAtPoints(np.zeros(n, dtype=np.bool_), arm, place, normal, *answered)
-        sizes = float(self.radius), float(self.length_of_point)
-        known = self.ground.kernel_data, self.law.kernel_data, float(self.law.reach)
-        return BodyContactData(self.points, *sizes, memory, *known, found, np.zeros(memory.shape[1]))
+        radii = np.full(len(self.points), self.radius)
+        here, began = (seabed_points(radii, self.ground, self.law, self.memory) for _ in range(2))
+        length, arm = float(self.length_of_point), np.zeros(self.points.shape)
+        return BodyContactData(self.points, length, arm, here, began, over_step(self.law, here, began))
 
     def kernel_data(self) -> BodyContactData:
-        found: BodyContactData = self._data
-        return found
+        data: BodyContactData = self._data
+        return data
 
     def force_on_body(self, state: State) -> Array:
         """Sum of the forces on the body (3,) [N], global axes; zero on a rank that does not evaluate it."""
@@ -182,7 +155,7 @@ class BodyContact(CompiledPart):
         if not self.active:
             return 0.0
         self.find(state)
-        return max(0.0, float(self._data.found.penetration.max()))
+        return max(0.0, float(self._data.here.law.penetration.max()))
 
     def sunk_by(self, force: float) -> float:
         """How deep [m] a force [N] presses all points into ground that has never been touched, ten lengths at most."""

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
+from riser_soil.core.bound import Bound, Packed, call_each, calls
 from riser_soil.core.compiled import njit
+from riser_soil.core.entries import Calls
 from riser_soil.core.part import State
-from riser_soil.seabed.compiled_law import answer
+from riser_soil.seabed.compiled_law import answer, continue_others
 from riser_soil.seabed.law import NormalLaw
+from riser_soil.seabed.points import SeabedPoints
 
 #: How little of the force may be bent along the way, by its slopes and by its rise, for both ends to tell the work.
 STEADY = 1e-3
@@ -27,16 +30,47 @@ def work_along_step(law: NormalLaw, before: Array, after: Array, history: Array)
     history (..., nh): at the beginning. See `work_at`.
     """
     work = np.empty(before.size)
-    rows = np.ascontiguousarray(history).reshape(before.size, history.shape[-1])
-    _work_each(law.kernel_data, law.reach, before.reshape(-1), after.reshape(-1), rows, work)
+    rows = np.array(history, order="C").reshape(before.size, history.shape[-1])
+    ways = (np.array(each).reshape(-1) for each in (before, after))
+    Bound(write_works, *map(Packed, (law.kernel_data, float(law.reach), *ways, rows, work)))()
     return work.reshape(before.shape)
 
 
 @njit
-def _work_each(law: Any, reach: float, before: Array, after: Array, history: Array, work: Array) -> None:
+def write_works(law: Any, reach: float, before: Array, after: Array, history: Array, work: Array) -> None:
+    """Write the work per length (n,) [N] at points with histories (n, nh), as of `work_along_step`."""
     workspace = np.empty(history.shape[1])
     for i in range(work.size):
         work[i] = work_at(law, reach, before[i], after[i], history[i], workspace)
+
+
+class OverStep(NamedTuple):
+    """A law with a history over a step: its work per length (n,) [N] by one way from the penetration at the beginning
+    to that at the end, and kernels that write it, and the history of points where the law does not act; none of a law
+    without.
+    """
+
+    work: Array
+    write_work: Calls
+    continue_others: Calls
+
+
+def over_step(law: NormalLaw, here: SeabedPoints, began: SeabedPoints) -> OverStep:
+    """Of a law at the end of a step and at its beginning."""
+    work = np.zeros(here.radius.size)
+    if here.law.history.shape[1] == 0:
+        return OverStep(work, calls(), calls())
+    data, way = Packed(law.kernel_data), (began.law.penetration, here.law.penetration)
+    written = map(Packed, (float(law.reach), *way, here.law.history, work))
+    kernels = Bound(write_works, data, *written), Bound(continue_others, data, Packed(here.law))
+    return OverStep(work, *map(calls, kernels))
+
+
+@njit
+def keep_history(step: OverStep, here: SeabedPoints) -> None:
+    """Keep the law's history at the end of the step."""
+    call_each(step.continue_others)
+    here.law.history[:] = here.law.after
 
 
 @njit

@@ -15,7 +15,7 @@ import numpy as np
 
 from riser_soil.contact.coulomb import Adhesion, Pair, adhesion_at, limits, return_map
 from riser_soil.contact.seabed_contact import SeabedContact
-from riser_soil.contact.seabed_kernels import SeabedData
+from riser_soil.contact.seabed_kernels import SeabedData, normal_at
 from riser_soil.core.arrays import Array
 from riser_soil.core.bound import Bound, Packed, bound
 from riser_soil.core.by_type import by_type
@@ -257,16 +257,16 @@ def _elastic(part: FrictionData, e: int, g: int) -> Pair:
 @njit
 def _moved(part: FrictionData, e: int, g: int) -> Vec:
     """The movement of a station in the step."""
-    moved: Vec = sub(padded(part.contact.found.position[e, g]), padded(part.position[e, g]))
+    moved: Vec = sub(padded(part.contact.position[e * part.slid.shape[1] + g]), padded(part.position[e, g]))
     return moved
 
 
 @njit
 def _limits(part: FrictionData, e: int, g: int) -> tuple[Pair, Pair]:
     """L of `coulomb` at a station, and its derivative by the penetration."""
-    found, mu = part.contact.found, (part.mu[0], part.mu[1])
-    most = adhesion_at(part.adhesion, found.penetration[e, g]) if mu[0] < math.inf else (math.inf, 0.0)
-    limit: tuple[Pair, Pair] = limits(found.force[e, g], found.slope[e, g], mu, most)
+    law, mu, p = part.contact.here.law, (part.mu[0], part.mu[1]), e * part.slid.shape[1] + g
+    most = adhesion_at(part.adhesion, law.penetration[p]) if mu[0] < math.inf else (math.inf, 0.0)
+    limit: tuple[Pair, Pair] = limits(law.force[p], law.slope[p], mu, most)
     return limit
 
 
@@ -275,7 +275,7 @@ def _friction_forces(part: FrictionData, at: Configuration, out: LineForces) -> 
     """After those of the contact that it belongs to."""
     contact = part.contact
     for e in range(part.stiffness.size):
-        if not contact.found.touches[e]:
+        if not contact.touches[e]:
             continue
         for g in range(contact.share.shape[1]):
             limit, rise = _limits(part, e, g)
@@ -287,15 +287,16 @@ def _friction_forces(part: FrictionData, at: Configuration, out: LineForces) -> 
 
 @add_tangent.of(FrictionData)
 def _friction_tangent(part: FrictionData, at: Configuration, maps: Maps, weights: Weights, K: Array) -> None:
-    contact, found, workspace = part.contact, part.contact.found, part.contact.element
+    contact, workspace = part.contact, part.contact.element
     for e in range(part.stiffness.size):
-        if not found.touches[e]:
+        if not contact.touches[e]:
             continue
         workspace[:] = 0.0
         for g in range(contact.share.shape[1]):
             limit, rise = _limits(part, e, g)
             _, by_elastic, by_penetration = return_map(_elastic(part, e, g), limit, rise)
-            ways, normal = read_along(part.along[e, g]), padded(found.normal[e, g])
+            p = e * contact.share.shape[1] + g
+            ways, normal = read_along(part.along[e, g]), normal_at(contact, p)
             write_matrix(
                 resistance_by_position(ways, part.stiffness[e], by_elastic, by_penetration, normal), contact.by
             )
@@ -307,7 +308,7 @@ def _friction_tangent(part: FrictionData, at: Configuration, maps: Maps, weights
 @add_energy.of(FrictionData)
 def _friction_energy(part: FrictionData, at: Configuration, energy: Array) -> None:
     for e in range(part.stiffness.size):
-        if part.contact.found.touches[e]:
+        if part.contact.touches[e]:
             for g in range(part.contact.share.shape[1]):
                 t: Vec = padded(part.resistance[e, g])
                 energy[2] += 0.5 * part.contact.share[e, g] / part.stiffness[e] * dot(t, t)
@@ -321,7 +322,7 @@ def _friction_work(part: FrictionData, first: Configuration, last: Configuration
         for g in range(contact.share.shape[1]):
             share, before = contact.share[e, g], padded(part.traction[e, g])
             work[0] += 0.5 * share / part.stiffness[e] * dot(before, before)
-            if contact.found.touches[e]:
+            if contact.touches[e]:
                 t: Vec = padded(part.resistance[e, g])
                 work[0] += share * dot(t, _moved(part, e, g)) - 0.5 * share / part.stiffness[e] * dot(t, t)
 
@@ -329,15 +330,15 @@ def _friction_work(part: FrictionData, first: Configuration, last: Configuration
 @keep.of(FrictionData)
 def _keep_traction(part: FrictionData, at: Configuration) -> None:
     """The traction, the way slid beyond the elastic mobilisation, and what the next step starts from."""
-    found = part.contact.found
+    contact = part.contact
     for e in range(part.stiffness.size):
         for g in range(part.slid.shape[1]):
             t, k = padded(part.traction[e, g]), part.stiffness[e]
-            if found.touches[e] and found.force[e, g] > 0.0:
+            if contact.here.law.force[e * part.slid.shape[1] + g] > 0.0:
                 taken = add(t, padded(part.resistance[e, g]))
                 part.slid[e, g] += slip_at(read_along(part.along[e, g]), taken, k, _moved(part, e, g))
             for i in range(len(at.D)):
-                part.traction[e, g, i] = -part.resistance[e, g, i] if found.touches[e] else 0.0
+                part.traction[e, g, i] = -part.resistance[e, g, i] if contact.touches[e] else 0.0
     write_start(part, at)
 
 
@@ -349,5 +350,5 @@ def _write_start(part: FrictionData, at: Configuration) -> None:
             p = e * part.slid.shape[1] + g
             tau, _ = stations.unit_tangent_at(contact.at.dN, p, at.chord, at.tangent, e, at.D)
             for i in range(len(at.D)):
-                contact.f[i], part.position[e, g, i] = tau[i], contact.found.position[e, g, i]
-            write_along(directions_at(padded(contact.f), padded(contact.found.normal[e, g])), part.along[e, g])
+                contact.f[i], part.position[e, g, i] = tau[i], contact.position[p, i]
+            write_along(directions_at(padded(contact.f), normal_at(contact, p)), part.along[e, g])

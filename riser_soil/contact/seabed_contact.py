@@ -11,10 +11,8 @@ import numpy as np
 from riser_soil.contact.contact import ContactResults, RiserContact, size_of, write_results
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_kernels import (
-    UNKNOWN,
     OverNodes,
     SeabedData,
-    covered_by,
     land,
     seabed_data,
     write_at_nodes,
@@ -32,6 +30,7 @@ from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.vectors import Vec
 from riser_soil.seabed.grounds import Ground, Plane
 from riser_soil.seabed.law import NormalLaw
+from riser_soil.seabed.points import UNKNOWN, covered_by
 
 
 class Covering(NamedTuple):
@@ -81,12 +80,16 @@ class SeabedContact(CompiledPart, RiserContact):
 
     def make_kernel_data(self) -> SeabedData:
         stations = self.at, self.share, self._radius, self.memory, self._nodes
-        cover = None if self._covering is None else self._covering.make()
-        return seabed_data(self.line, *stations, self.ground.kernel_data, self.law, cover)
+        return seabed_data(self.line, *stations, self.ground, self.law, self._cover)
 
     def kernel_data(self) -> SeabedData:
-        found: SeabedData = self._data
-        return found
+        data: SeabedData = self._data
+        return data
+
+    @cached_property
+    def _cover(self) -> Any:
+        """Kernel data of what lies on the ground, None for nothing."""
+        return None if self._covering is None else self._covering.make()
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         self._renew_cover()
@@ -94,7 +97,7 @@ class SeabedContact(CompiledPart, RiserContact):
     def _renew_cover(self) -> None:
         """What covers the ground moves as the line does: when a step is accepted."""
         if self._covering is not None and self._covered_from is not self.line.x:
-            self._covering.renew(self._data.cover)
+            self._covering.renew(self._cover)
             self._covered_from = self.line.x
 
     @cached_property
@@ -148,8 +151,8 @@ class SeabedContact(CompiledPart, RiserContact):
         return self._along
 
     def contact_along_line(self, state: State) -> tuple[Array, Array]:
-        found = self._results(state)
-        return found.clearance, found.force
+        results = self._results(state)
+        return results.clearance, results.force
 
     def predict(self, guess: State) -> Array:
         """Increments of a first guess that lands, see `along_step`; into soft clay the riser sinks on as it does."""

@@ -9,15 +9,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.along_step import lift, work_at
+from riser_soil.contact.along_step import OverStep, keep_history, lift, over_step
 from riser_soil.contact.contact import ContactResults, write_results
-from riser_soil.core.arrays import Array, BoolArray, IntArray
-from riser_soil.core.by_type import by_type
+from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.bound import call_each
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.core.part import Weights
 from riser_soil.core.rows import add_pulled_back, add_weighed, as_tuple
 from riser_soil.riser import stations
 from riser_soil.riser.configuration import Configuration, Maps
+from riser_soil.riser.hermite import Size
 from riser_soil.riser.line import Line
 from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent, add_work, keep
 from riser_soil.riser.vectors import (
@@ -40,11 +41,9 @@ from riser_soil.riser.vectors import (
     write,
     write_matrix,
 )
-from riser_soil.seabed.compiled_law import answer, may_act
-from riser_soil.seabed.grounds import distance_at
+from riser_soil.seabed.grounds import Ground
 from riser_soil.seabed.law import NormalLaw
-
-UNKNOWN = -1  # number of what lies on the ground below a place
+from riser_soil.seabed.points import SeabedPoints, find_penetrations, seabed_points
 
 
 class LineFrame(NamedTuple):
@@ -64,53 +63,32 @@ class OverNodes(NamedTuple):
     linear: Array
 
 
-class Found(NamedTuple):
-    """What was found last at the stations: which elements touch (ne,); position and normal (ne, ng, d); penetration,
-    force, its slope and energy stored (ne, ng); what covers the ground below (ne, ng), see `covered_by`; the law's
-    history after the step (ne, ng, nh), of elements that touch.
-    """
-
-    touches: BoolArray
-    position: Array
-    normal: Array
-    penetration: Array
-    force: Array
-    slope: Array
-    stored: Array
-    below: IntArray
-    after: Array
-
-
-class Bare(NamedTuple):
-    """Ground on which nothing lies anywhere; nothing: -1."""
-
-    nothing: int
-
-
 class SeabedData(NamedTuple):
-    """A `SeabedContact`: its stations and their share of arc length (ne, ng), radius (ne,), memory (ne, ng, nh), the
-    nodes, and the kernel data of its ground and law; the law's start and reach; shares (2,) of the law that act where a
-    step starts and where it ends; what covers the ground in places; workspace for an element, for the force and its
-    derivative at a station, and for a history (nh,).
+    """A `SeabedContact`: its stations and their share of arc length (ne, ng), radius (ne,), the nodes; the gap at which
+    the law's force starts [m]; shares (2,) of the law that act where a step starts and where it ends.
+
+    As found last: which elements touch (ne,); positions of the stations (ne ng, d) and what the seabed does there, with
+    forces by their share of the law; the same where the step began, by the whole law; the nodes beside the seabed;
+    the law over the step. Workspace for an element, and for the force and its derivative at a station.
     """
 
     at: stations.Stations
     share: Array
     radius: Array
-    memory: Array
-    nodes: OverNodes
+    over_nodes: OverNodes
     frame: LineFrame
-    ground: Any
-    law: Any
     start: float
-    reach: float
     acting: Array
-    cover: Any
-    found: Found
+    touches: BoolArray
+    position: Array
+    began_at: Array
+    here: SeabedPoints
+    began: SeabedPoints
+    nodes: SeabedPoints
+    over_step: OverStep
     element: Array
     f: Array
     by: Array
-    after: Array
 
 
 def seabed_data(
@@ -120,22 +98,22 @@ def seabed_data(
     radius: Array,
     memory: Array,
     nodes: OverNodes,
-    ground: Any,
+    ground: Ground,
     law: NormalLaw,
     cover: Any,
 ) -> SeabedData:
-    """With the workspace that they need; ground: its kernel data; cover: what lies on it in places, None for nothing.
+    """With the workspace that they need; memory (ne, ng, nh): the law's history; cover: kernel data of what lies on the
+    ground in places, None for nothing.
     """
-    (ne, ng), d = share.shape, line.dimension
-    position, normal = np.zeros((ne, ng, d)), np.zeros((ne, ng, d))
-    penetration, force, slope, stored = (np.zeros((ne, ng)) for _ in range(4))
-    touches, below = np.zeros(ne, dtype=np.bool_), np.full((ne, ng), UNKNOWN)
-    found = Found(touches, position, normal, penetration, force, slope, stored, below, np.zeros(memory.shape))
+    (ne, ng, nh), d, radii = memory.shape, line.dimension, np.repeat(radius, share.shape[1])
+    here, began = (seabed_points(radii, ground, law, memory.reshape(ne * ng, nh), cover) for _ in range(2))
+    beside = seabed_points(nodes.radius, ground, law, law.initial_history(nodes.radius.shape), cover)
+    places = np.zeros(ne, dtype=np.bool_), np.zeros((ne * ng, d)), np.zeros((ne * ng, d))
     element = stations.element_workspace(2 * line.ndof, fixed(d))
-    workspace = element, np.zeros(d), np.zeros((d, d)), np.zeros(memory.shape[2])
-    law_data = law.kernel_data, float(law.start), float(law.reach), np.ones(2)
-    given = at, share, radius, memory, nodes, frame_of(line), ground, *law_data
-    return SeabedData(*given, Bare(-1) if cover is None else cover, found, *workspace)
+    return SeabedData(
+        *(at, share, radius, nodes, frame_of(line), float(law.start), np.ones(2), *places),
+        *(here, began, beside, over_step(law, here, began), element, np.zeros(d), np.zeros((d, d))),
+    )
 
 
 def frame_of(line: Line) -> LineFrame:
@@ -146,16 +124,25 @@ def frame_of(line: Line) -> LineFrame:
 
 
 @njit
-def distance_in(frame: LineFrame, ground: Any, x: Vec) -> tuple[float, Vec, Mat]:
-    """Distance of a point from the ground [m], its gradient and hessian [1/m], in the line's axes as x is."""
-    value, gradient, hessian = distance_at(ground, global_place(frame, x))
-    return value, matvec(frame.axes, gradient), matmul(matmul(frame.axes, hessian), transpose(frame.axes))
-
-
-@njit
 def global_place(frame: LineFrame, x: Vec) -> Vec:
     """A place in global axes [m]."""
     return add(frame.origin, vecmat(x, frame.axes))
+
+
+@njit
+def normal_at(part: SeabedData, p: int) -> Vec:
+    """Gradient of the distance of a station from the ground, in the line's axes as its position is."""
+    normal: Vec = matvec(part.frame.axes, vector(part.here.at.gradient[p]))
+    return normal
+
+
+@njit
+def bend_at(part: SeabedData, p: int) -> Mat:
+    """Hessian of the distance [1/m] there, in the line's axes."""
+    if part.here.write_hessians.rows.size == 0:
+        return ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    axes = part.frame.axes
+    return matmul(matmul(axes, matrix(part.here.at.hessian[p])), transpose(axes))
 
 
 @njit
@@ -164,102 +151,79 @@ def by_position(force: float, slope: float, normal: Vec, bend: Mat) -> Mat:
     return matadd(matscale(slope, outer(normal, normal)), matscale(-force, bend))
 
 
-@by_type
-def covered_by(cover: Any, x: Vec, known: int) -> Any:
-    """What lies on the ground below a place x, in global axes: its number, < 0 for nothing. known: what was found there
-    last, UNKNOWN at first.
-    """
-
-
-@covered_by.of(Bare)
-def _never(cover: Bare, x: Vec, known: int) -> int:
-    return cover.nothing
-
-
 @njit
-def _is_covered(part: SeabedData, place: Array, e: int, g: int) -> bool:
-    """Whether something else lies on the ground below a station."""
-    below = part.found.below
-    below[e, g] = covered_by(part.cover, global_place(part.frame, padded(place)), below[e, g])
-    return bool(below[e, g] >= 0)
+def _place(part: SeabedData, q: Array, D: Size, position: Array, points: SeabedPoints) -> None:
+    """Write the positions of the stations, and the same in global axes."""
+    ng = part.share.shape[1]
+    for p in range(len(position)):
+        x = stations.value_at(part.at.N, p, q, p // ng, D)
+        for i in range(len(D)):
+            position[p, i] = x[i]
+        write(global_place(part.frame, padded(position[p])), points.at.place[p])
 
 
 @njit
 def land(part: SeabedData, x: Array, moved: Array) -> None:
-    """Raise the increments (nn, ndof) of nodes at x (nn, d) that would sink, see `along_step`."""
-    d, start = x.shape[1], part.start
+    """Raise the increments (nn, ndof) of nodes at x (nn, d) that would sink, see `along_step`; not of those that come
+    down on something else.
+    """
+    d, start, penetration = x.shape[1], part.start, part.nodes.law.penetration
+    _find_at_nodes(part, x)
+    present = -penetration - start
+    _find_at_nodes(part, x + moved[:, :d])
     for n in range(x.shape[0]):
-        now = padded(x[n])
-        then = add(now, padded(moved[n, :d]))
-        present, _, _ = distance_in(part.frame, part.ground, now)
-        guessed, _, _ = distance_in(part.frame, part.ground, then)
-        present, guessed = present - part.nodes.radius[n] - start, guessed - part.nodes.radius[n] - start
-        if lift(np.inf, guessed, start) > 0.0 and not _lies_beside(part, then):
-            moved[n, d - 1] += lift(np.inf if _lies_beside(part, now) else present, guessed, start)
+        moved[n, d - 1] += lift(present[n], -penetration[n] - start, start)
 
 
 @njit
-def _lies_beside(part: SeabedData, x: Vec) -> bool:
-    """Whether something else lies on the ground below a place."""
-    return bool(covered_by(part.cover, global_place(part.frame, x), UNKNOWN) >= 0)
+def _find_at_nodes(part: SeabedData, x: Array) -> None:
+    """Find the penetrations of nodes at x (nn, d)."""
+    for n in range(x.shape[0]):
+        write(global_place(part.frame, padded(x[n])), part.nodes.at.place[n])
+    find_penetrations(part.nodes)
 
 
 @add_forces.of(SeabedData)
 def _contact_forces(part: SeabedData, at: Configuration, out: LineForces) -> None:
-    found, ng = part.found, part.share.shape[1]
-    for e in range(part.radius.size):
-        touches = False
-        for g in range(ng):
-            x = stations.value_at(part.at.N, e * ng + g, at.q, e, at.D)
-            for i in range(len(at.D)):
-                found.position[e, g, i] = x[i]
-            value, normal, _ = distance_in(part.frame, part.ground, padded(found.position[e, g]))
-            found.penetration[e, g] = part.radius[e] - value
-            write(normal, found.normal[e, g])
-            if may_act(part.law, found.penetration[e, g], part.memory[e, g]):
-                if _is_covered(part, found.position[e, g], e, g):
-                    found.penetration[e, g] = -np.inf
-                else:
-                    touches = True
-        found.touches[e] = touches
-        if touches:
-            _press(part, at, e, out)
-
-
-@njit
-def _press(part: SeabedData, at: Configuration, e: int, out: LineForces) -> None:
-    """Forces on an element that touches."""
-    found = part.found
-    for g in range(part.share.shape[1]):
-        force, slope, stored = answer(part.law, found.penetration[e, g], part.memory[e, g], found.after[e, g])
-        acting = part.acting[1]
-        found.force[e, g], found.slope[e, g], found.stored[e, g] = acting * force, acting * slope, acting * stored
-        write(scale(-acting * force, padded(found.normal[e, g])), part.f)
-        p = e * part.share.shape[1] + g
-        stations.add_integrand_at(part.at.weighted, p, as_tuple(part.f, at.D), out.end_q, e, at.D)
+    """By the share of the law that acts."""
+    here, law, ng = part.here, part.here.law, part.share.shape[1]
+    _place(part, at.q, at.D, part.position, here)
+    find_penetrations(here)
+    call_each(here.answer)
+    part.touches[:] = False
+    for p in range(len(part.position)):
+        if law.acts[p]:
+            part.touches[p // ng] = True
+            law.force[p] *= part.acting[1]
+            law.slope[p] *= part.acting[1]
+            law.stored[p] *= part.acting[1]
+            write(scale(-law.force[p], normal_at(part, p)), part.f)
+            stations.add_integrand_at(part.at.weighted, p, as_tuple(part.f, at.D), out.end_q, p // ng, at.D)
 
 
 @add_tangent.of(SeabedData)
 def _contact_tangent(part: SeabedData, at: Configuration, maps: Maps, weights: Weights, K: Array) -> None:
-    found, workspace = part.found, part.element
+    law, workspace, ng = part.here.law, part.element, part.share.shape[1]
+    call_each(part.here.write_hessians)
     for e in range(part.radius.size):
-        if not found.touches[e]:
+        if not part.touches[e]:
             continue
         workspace[:] = 0.0
-        for g in range(part.share.shape[1]):
-            _, _, bend = distance_in(part.frame, part.ground, padded(found.position[e, g]))
-            write_matrix(by_position(found.force[e, g], found.slope[e, g], padded(found.normal[e, g]), bend), part.by)
-            pressed = part.at.N[e, g], part.by, maps.place_rows[e]
-            add_weighed(workspace, part.at.weighted[e, g], (pressed,), at.D, at.R)
+        for g in range(ng):
+            p = e * ng + g
+            if law.acts[p]:
+                stiffness = by_position(law.force[p], law.slope[p], normal_at(part, p), bend_at(part, p))
+                write_matrix(stiffness, part.by)
+                pressed = part.at.N[e, g], part.by, maps.place_rows[e]
+                add_weighed(workspace, part.at.weighted[e, g], (pressed,), at.D, at.R)
         add_pulled_back(K[e], at.P[e], workspace, at.D, at.R)
 
 
 @add_energy.of(SeabedData)
 def _contact_energy(part: SeabedData, at: Configuration, energy: Array) -> None:
-    for e in range(part.radius.size):
-        if part.found.touches[e]:
-            for g in range(part.share.shape[1]):
-                energy[2] += part.share[e, g] * part.found.stored[e, g]
+    ng = part.share.shape[1]
+    for p in range(len(part.position)):
+        energy[2] += part.share[p // ng, p % ng] * part.here.law.stored[p]
 
 
 @add_work.of(SeabedData)
@@ -270,73 +234,48 @@ def _contact_work(part: SeabedData, first: Configuration, last: Configuration, w
     work of the law along the step is the time scheme's; on ground without a history it is all. The last configuration
     is that of the forces found last.
     """
-    found, ng = part.found, part.share.shape[1]
-    taken, gained, by_law = 0.0, 0.0, 0.0
-    before, began = np.zeros(ng), np.zeros((ng, part.f.size))
-    for e in range(part.radius.size):
-        touched = False
-        for g in range(ng):
-            x = stations.value_at(part.at.N, e * ng + g, first.q, e, last.D)
-            for i in range(len(last.D)):
-                began[g, i] = x[i]
-            value, _, _ = distance_in(part.frame, part.ground, padded(began[g]))
-            before[g] = part.radius[e] - value
-            if may_act(part.law, before[g], part.memory[e, g]):
-                if _is_covered(part, began[g], e, g):
-                    before[g] = -np.inf
-                else:
-                    touched = True
-        for g in range(ng):
-            share = part.share[e, g]
-            if found.touches[e]:
-                way = sub(padded(found.position[e, g]), padded(began[g]))
-                taken -= share * found.force[e, g] * dot(padded(found.normal[e, g]), way)
-                gained += share * found.stored[e, g]
-            if touched:
-                stored = answer(part.law, before[g], part.memory[e, g], part.after)[2]
-                gained -= share * part.acting[0] * stored
-            if part.memory.shape[2] > 0 and (touched or found.touches[e]):
-                after = found.penetration[e, g]
-                by_law += share * work_at(part.law, part.reach, before[g], after, part.memory[e, g], part.after)
-    work[0] += taken - gained
-    work[3] += taken - by_law if part.memory.shape[2] > 0 else taken - gained
+    here, began, ng = part.here.law, part.began.law, part.share.shape[1]
+    extracted, gained, by_law = 0.0, 0.0, 0.0
+    _place(part, first.q, last.D, part.began_at, part.began)
+    find_penetrations(part.began)
+    call_each(part.began.answer)
+    call_each(part.over_step.write_work)
+    for p in range(len(part.position)):
+        share = part.share[p // ng, p % ng]
+        gained += share * (here.stored[p] - part.acting[0] * began.stored[p])
+        by_law += share * part.over_step.work[p]
+        if here.acts[p]:
+            way = sub(padded(part.position[p]), padded(part.began_at[p]))
+            extracted -= share * here.force[p] * dot(normal_at(part, p), way)
+    work[0] += extracted - gained
+    work[3] += extracted - (by_law if part.over_step.write_work.rows.size > 0 else gained)
 
 
 @keep.of(SeabedData)
-def _keep_memory(part: SeabedData, at: Configuration) -> None:
+def _keep_history(part: SeabedData, at: Configuration) -> None:
     """The law's history after the step."""
-    found, memory = part.found, part.memory
-    for e in range(memory.shape[0] if memory.shape[2] > 0 else 0):
-        for g in range(memory.shape[1]):
-            if not found.touches[e]:
-                answer(part.law, found.penetration[e, g], memory[e, g], found.after[e, g])
-            for k in range(memory.shape[2]):
-                memory[e, g, k] = found.after[e, g, k]
+    keep_history(part.over_step, part.here)
 
 
 @write_results.of(SeabedData)
 def _contact_results(part: SeabedData, at: Configuration, out: ContactResults) -> None:
-    found, nodes, total = part.found, part.nodes, (0.0, 0.0, 0.0)
+    law, over, nodes, total = part.here.law, part.over_nodes, part.nodes, (0.0, 0.0, 0.0)
     ng = part.share.shape[1]
     out.force_per_length[:], out.deepest[0] = 0.0, 0.0
-    for e in range(part.radius.size):
-        for g in range(ng):
-            pressing, k = found.force[e, g] if found.touches[e] else 0.0, e * ng + g
-            covered = _is_covered(part, found.position[e, g], e, g)
-            out.clearance[k] = np.inf if covered else -found.penetration[e, g] - part.start
-            out.force[k] = pressing
-            out.deepest[0] = max(out.deepest[0], found.penetration[e, g])
-            for side in range(2):
-                out.force_per_length[e + side] += nodes.linear[side, g] * (part.share[e, g] * pressing)
-            total = add(total, scale(part.share[e, g] * pressing, padded(found.normal[e, g])))
+    call_each(part.here.set_all_aside)
+    for p in range(len(part.position)):
+        e, g, force = p // ng, p % ng, law.force[p]
+        out.clearance[p] = -law.penetration[p] - part.start
+        out.force[p] = force
+        out.deepest[0] = max(out.deepest[0], law.penetration[p])
+        for side in range(2):
+            out.force_per_length[e + side] += over.linear[side, g] * (part.share[e, g] * force)
+        total = add(total, scale(part.share[e, g] * force, normal_at(part, p)))
     write(vecmat(total, part.frame.axes), out.on_riser)
-    for n in range(nodes.length.size):
-        value, _, _ = distance_in(part.frame, part.ground, padded(at.x[n]))
-        inside = max(0.0, nodes.radius[n] - value)
-        out.force_per_length[n] /= nodes.length[n]
-        if inside > 0.0 and _lies_beside(part, padded(at.x[n])):
-            inside = 0.0
-        out.penetration[n] = out.depth[n] = inside
+    _find_at_nodes(part, at.x)
+    for n in range(over.length.size):
+        out.force_per_length[n] /= over.length[n]
+        out.penetration[n] = out.depth[n] = max(0.0, nodes.law.penetration[n])
 
 
 @njit

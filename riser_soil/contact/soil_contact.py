@@ -15,7 +15,6 @@ from riser_soil.contact.ground import CandidatePairs, DeformedSurface
 from riser_soil.contact.on_condensed_soil import Touched
 from riser_soil.contact.pairing import Cover, facet_below
 from riser_soil.contact.seabed_contact import Covering
-from riser_soil.contact.seabed_kernels import covered_by
 from riser_soil.contact.touchdown import PointsAlong
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.part import Energy, MatrixBlock, State, Traits, Work
@@ -24,6 +23,7 @@ from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.line import Line
 from riser_soil.riser.vectors import Vec
 from riser_soil.seabed.law import NormalLaw
+from riser_soil.seabed.points import covered_by
 
 if TYPE_CHECKING:
     from riser_soil.soil.condensed import SoilSurface

@@ -6,11 +6,12 @@ there is no implementation for their type.
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.by_type import by_type
 from riser_soil.core.compiled import njit
 from riser_soil.seabed.law import SeabedResponse
@@ -29,40 +30,64 @@ def may_act(law: Any, penetration: float, history: Array) -> Any:
     """Whether there may be a force, or stored energy, at the end of such a step."""
 
 
+class LawPoints(NamedTuple):
+    """Points (n,) that a law is asked at: penetration [m] at the end of a step, history (n, nh) at its beginning. The
+    answer: whether the law may act; force, slope and energy stored as in `SeabedResponse`, 0 where it may not; the
+    history (n, nh) at the end of the step.
+    """
+
+    penetration: Array
+    history: Array
+    acts: BoolArray
+    force: Array
+    slope: Array
+    stored: Array
+    after: Array
+
+
+def law_points(penetration: Array, history: Array) -> LawPoints:
+    """Points with workspace for the answer."""
+    force, slope, stored = np.zeros((3, penetration.size))
+    acts = np.zeros(penetration.size, dtype=np.bool_)
+    return LawPoints(penetration, history, acts, force, slope, stored, np.zeros(history.shape))
+
+
+@njit
+def answer_acting(law: Any, points: LawPoints) -> None:
+    """Write a law's answer, by its kernel data, at the points where it may act."""
+    z, history = points.penetration, points.history
+    for p in range(z.size):
+        points.force[p], points.slope[p], points.stored[p] = 0.0, 0.0, 0.0
+        points.acts[p] = may_act(law, z[p], history[p])
+        if points.acts[p]:
+            points.force[p], points.slope[p], points.stored[p] = answer(law, z[p], history[p], points.after[p])
+
+
+@njit
+def continue_others(law: Any, points: LawPoints) -> None:
+    """Write the history at the end of the step of the points where the law does not act."""
+    for p in range(points.penetration.size):
+        if not points.acts[p]:
+            answer(law, points.penetration[p], points.history[p], points.after[p])
+
+
 class CompiledLaw:
     """Base of all `NormalLaw`s: what a law does is in the kernels for its kernel data."""
 
     kernel_data: Any
     gradual: ClassVar[bool] = False
 
-    def active(self, penetration: Array, history: Array) -> BoolArray:
-        z, before = _points(penetration, history)
-        out = np.empty(z.size, dtype=np.bool_)
-        _whether_each(self.kernel_data, z, before, out)
-        return out.reshape(penetration.shape)
-
     def update(self, penetration: Array, history: Array) -> SeabedResponse:
-        z, before = _points(penetration, history)
-        found, after = np.empty((3, z.size)), np.empty(before.shape)
-        _answer_each(self.kernel_data, z, before, found, after)
-        force, slope, stored = found.reshape(3, *penetration.shape)
-        return SeabedResponse(force, slope, after.reshape(history.shape), stored)
+        points = self.answers(penetration, history)
+        force, slope, stored = (each.reshape(penetration.shape) for each in (points.force, points.slope, points.stored))
+        return SeabedResponse(force, slope, points.after.reshape(history.shape), stored)
 
-
-def _points(penetration: Array, history: Array) -> tuple[Array, Array]:
-    """Penetrations (n,) and histories (n, nh) of one kind of array, for which loops are compiled once."""
-    z = np.ascontiguousarray(penetration, dtype=float).reshape(-1)
-    return z, np.ascontiguousarray(history, dtype=float).reshape(z.size, history.shape[-1])
-
-
-@njit
-def _answer_each(law: Any, penetration: Array, history: Array, out: Array, after: Array) -> None:
-    """Writes force, slope and energy stored to out (3, n)."""
-    for i in range(penetration.size):
-        out[0, i], out[1, i], out[2, i] = answer(law, penetration[i], history[i], after[i])
-
-
-@njit
-def _whether_each(law: Any, penetration: Array, history: Array, out: BoolArray) -> None:
-    for i in range(penetration.size):
-        out[i] = may_act(law, penetration[i], history[i])
+    def answers(self, penetration: Array, history: Array) -> LawPoints:
+        """The answer at points (n,), of whatever shape they were."""
+        z = np.array(penetration, dtype=float).reshape(-1)
+        points = law_points(z, np.array(history, dtype=float, order="C").reshape(z.size, history.shape[-1]))
+        law, packed = Packed(self.kernel_data), Packed(points)
+        Bound(answer_acting, law, packed)()
+        if history.shape[-1] > 0:
+            Bound(continue_others, law, packed)()
+        return points

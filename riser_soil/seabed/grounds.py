@@ -13,7 +13,8 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array
+from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.by_type import by_type
 from riser_soil.core.compiled import njit
 
@@ -52,21 +53,50 @@ class Ground(ABC):
 
     def distance(self, x: Array) -> Distance:
         """Distance of points x (n, 3) in global axes."""
-        n = len(x)
-        found = np.empty(n), np.empty((n, 3)), np.empty((0 if self.flat else n, 3, 3))
-        _distances(self.kernel_data, np.ascontiguousarray(x, dtype=float), *found)
-        return Distance(*found[:2], None if self.flat else found[2])
+        points = ground_points(len(x))
+        points.place[...] = x
+        data, packed = Packed(self.kernel_data), Packed(points)
+        Bound(write_distances, data, packed)()
+        if self.flat:
+            return Distance(points.distance, points.gradient, None)
+        Bound(write_hessians, data, packed, Packed(np.ones(len(x), dtype=np.bool_)))()
+        return Distance(points.distance, points.gradient, points.hessian)
+
+
+class GroundPoints(NamedTuple):
+    """Places (n, 3) in global axes [m]; of each the distance (n,) from a ground [m], its gradient (n, 3), and its
+    hessian (n, 3, 3) [1/m], zero on flat ground.
+    """
+
+    place: Array
+    distance: Array
+    gradient: Array
+    hessian: Array
+
+
+def ground_points(n: int) -> GroundPoints:
+    """Workspace for n points."""
+    return GroundPoints(np.zeros((n, 3)), np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3, 3)))
 
 
 @njit
-def _distances(ground: Any, x: Array, value: Array, gradient: Array, hessian: Array) -> None:
-    for i in range(len(x)):
-        d, by_x, twice = distance_at(ground, (x[i, 0], x[i, 1], x[i, 2]))
-        value[i] = d
-        gradient[i, 0], gradient[i, 1], gradient[i, 2] = by_x
-        if len(hessian) > 0:
-            for j in range(3):
-                hessian[i, j, 0], hessian[i, j, 1], hessian[i, j, 2] = twice[j]
+def write_distances(ground: Any, points: GroundPoints) -> None:
+    """Write the distances of points from a ground, by its kernel data, and their gradients."""
+    place, gradient = points.place, points.gradient
+    for p in range(points.distance.size):
+        points.distance[p], by_place, _ = distance_at(ground, (place[p, 0], place[p, 1], place[p, 2]))
+        gradient[p, 0], gradient[p, 1], gradient[p, 2] = by_place
+
+
+@njit
+def write_hessians(ground: Any, points: GroundPoints, wanted: BoolArray) -> None:
+    """Write the hessians of the distances of those points that are wanted (n,)."""
+    place, hessian = points.place, points.hessian
+    for p in range(points.distance.size):
+        if wanted[p]:
+            _, _, rows = distance_at(ground, (place[p, 0], place[p, 1], place[p, 2]))
+            for i in range(3):
+                hessian[p, i, 0], hessian[p, i, 1], hessian[p, i, 2] = rows[i]
 
 
 class PlaneData(NamedTuple):

@@ -14,7 +14,7 @@ from riser_soil.core.quantities import FROZEN
 from riser_soil.seabed.bearing import Strength
 
 if TYPE_CHECKING:
-    from riser_soil.core.arrays import Array, BoolArray
+    from riser_soil.core.arrays import Array
 
 
 class SeabedResponse(NamedTuple):
@@ -67,10 +67,6 @@ class NormalLaw(Protocol):
 
     def initial_history(self, shape: tuple[int, ...]) -> Array:
         """History of ground that has never been touched (*shape, nh)."""
-        ...
-
-    def active(self, penetration: Array, history: Array) -> BoolArray:
-        """Points where there may be a force, or stored energy."""
         ...
 
     def update(self, penetration: Array, history: Array) -> SeabedResponse:

@@ -6,8 +6,8 @@ import math
 from typing import NamedTuple
 
 from riser_soil.contact.seabed_contact import Covering
-from riser_soil.contact.seabed_kernels import covered_by
 from riser_soil.riser.vectors import Vec
+from riser_soil.seabed.points import covered_by
 
 
 class BeyondData(NamedTuple):

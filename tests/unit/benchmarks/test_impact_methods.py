@@ -39,4 +39,4 @@ def test_short_way_is_the_penalty(depth: float) -> None:
 
 def test_touches_while_it_leaves() -> None:
     """Contact that ends within the step still gives back its potential."""
-    assert LAW.active(np.array([-1.0, -1.0]), np.array([[1e-3], [-0.5]])).tolist() == [True, False]
+    assert LAW.answers(np.array([-1.0, -1.0]), np.array([[1e-3], [-0.5]])).acts.tolist() == [True, False]

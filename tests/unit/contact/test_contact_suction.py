@@ -25,7 +25,7 @@ def test_tension_rises_to_the_cap_and_falls_to_nothing_at_its_reach() -> None:
 
 def test_ground_that_was_never_touched_does_not_hold() -> None:
     assert not at(SHARP, -np.linspace(0.0, REACH, 9), SHARP.initial_history((1,)))[0].any()
-    assert not SHARP.active(np.array([-0.001]), SHARP.initial_history((1,))).any()
+    assert not SHARP.answers(np.array([-0.001]), SHARP.initial_history((1,))).acts.any()
 
 
 def test_what_is_broken_stays_so_until_the_next_touch() -> None:

@@ -104,7 +104,6 @@ def test_force_is_zero_out_of_contact(law: NormalLaw) -> None:
     normal = np.array([-np.inf, -1.0, -1e-9, 0.0])
     for history in (law.initial_history((1,)), after(law, through(0.0, 0.07, 0.05))):
         np.testing.assert_array_equal(at(law, normal, history), np.zeros((2, 4)))
-        assert not law.active(normal, np.repeat(history, 4, axis=0)).any()
         assert not law.update(normal, np.repeat(history, 4, axis=0)).stored.any()
 
 
