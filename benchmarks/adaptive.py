@@ -43,7 +43,7 @@ class StepHistory(StatelessObserver):
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         self.t.append(step.t)
         self.dt.append(step.dt)
-        record = self._instants.record_of([self._instants.look(stepper)]).at(0)
+        record = self._instants.record_of([self._instants.copy(stepper)]).at(0)
         self.tension.append(float(record.effective_tension[-1]))
         self.touchdown.append(float(record.touchdown_arc))
         self.cuts += step.cuts

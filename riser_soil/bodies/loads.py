@@ -1,4 +1,4 @@
-"""Weight and buoyancy of a body, and what holds it as it is let go."""
+"""Weight and buoyancy of a body, and springs that release it gradually."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ from riser_soil.riser.vectors import (
     vector,
 )
 
-STIFFER, LEAST = 10.0, 1e-6  # times the moment, of what holds a body as it is let go; its least force [N]
+STIFFER, LEAST = 10.0, 1e-6  # times the moment, of the springs that release a body; their least force [N]
 
 
 class WeightData(NamedTuple):

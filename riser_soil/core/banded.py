@@ -36,7 +36,7 @@ def workspace(n: int, b: int) -> tuple[Array, Size]:
 
 @njit
 def factorise(ab: Array, pivots: IntArray, B: Size) -> bool:
-    """Factorise a matrix in place; whether it is regular. pivots (n,): the rows that were taken as pivots'; B: see
+    """Factorise a matrix in place; whether it is regular. pivots (n,): the rows of the pivots; B: see
     `workspace`.
     """
     b, width, reach = len(B), ab.shape[1], 0

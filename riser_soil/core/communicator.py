@@ -1,7 +1,7 @@
 """The processes that take part in a run: MPI's communicator where there are several or soil, else one without MPI.
 
 A riser alone needs no MPI, which takes its time to start and need not be installed. Whether a process is one of several
-is told by the environment in which their launcher starts it.
+follows from the environment in which their launcher starts it.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 
 # How many processes were started together, by OpenMPI, MPICH and Intel MPI, MVAPICH, IBM's jsrun, Slurm's srun.
 SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE", "JSM_NAMESPACE_SIZE", "SLURM_STEP_NUM_TASKS")
-RANKS = ("PMIX_RANK", "PMI_RANK", "PALS_RANKID", "ALPS_APP_PE")  # of one among a number that is not told
+RANKS = ("PMIX_RANK", "PMI_RANK", "PALS_RANKID", "ALPS_APP_PE")  # of one among an unknown number
 
 
 class Communicator(Protocol):
-    """What is used of mpi4py's communicators by what a riser alone needs, too; collective but for rank and size."""
+    """Methods of mpi4py's communicators that a riser alone needs, too; collective but for rank and size."""
 
     @property
     def rank(self) -> int: ...
@@ -92,7 +92,7 @@ def world(with_mpi: bool = False) -> Communicator:
 
 
 def _started_together() -> str:
-    """What of the environment tells that there are several processes, or may be; "" where nothing does."""
+    """Variable of the environment by which there are several processes, or may be; "" where there is none."""
     environment = os.environ
     sizes = [name for name in SIZES if environment.get(name, "").isdecimal()]
     several = [name for name in sizes if int(environment[name]) > 1]
@@ -111,11 +111,24 @@ def all_of(comm: Communicator, here: bool) -> bool:
 
 
 @contextmanager
+def raised_on_all_ranks(comm: Communicator) -> Iterator[None]:
+    """Raise an error of this program that a rank meets in the block on all ranks; collective."""
+    failure: RiserSoilError | None = None
+    try:
+        yield
+    except RiserSoilError as err:
+        failure = err
+    for error in comm.allgather(failure):
+        if error is not None:
+            raise error from (failure.__cause__ if failure is not None else None)
+
+
+@contextmanager
 def destroyed_together(comm: Communicator, *destroy: Callable[[], None]) -> Iterator[None]:
-    """Call what gives back what the ranks hold together, as the block ends; collective.
+    """Call functions that free what all ranks share, as the block ends; collective.
 
     Not after an error that is not known to be all ranks': the one that met it would wait for the others, which are in
-    the middle of their work, and never tell.
+    the middle of their work, and its message would never be shown.
     """
     together = True
     try:

@@ -140,7 +140,7 @@ def write_places(keys: IntArray, own: IntArray, numbers: IntArray, out: IntArray
 
 @njit
 def add_at(data: Array, places: IntArray, values: Array) -> None:
-    """Add values to those at places, which may be the same; at -1 - place they are taken off."""
+    """Add values to those at places, which may be the same; at -1 - place they are subtracted."""
     for k in range(places.size):
         if places[k] >= 0:
             data[places[k]] += values[k]

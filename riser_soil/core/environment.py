@@ -14,7 +14,7 @@ _PACKAGES = ("numpy", "scipy", "numba", "petsc4py", "mpi4py", "h5py", "dolfinx")
 
 
 def environment_alone() -> dict[str, str]:
-    """This process's environment without what MPI told it."""
+    """This process's environment without the variables that MPI has set."""
     return {name: value for name, value in os.environ.items() if not name.startswith(_MPI)}
 
 

@@ -17,7 +17,7 @@ from riser_soil.core.saved_state import Stateful
 
 @runtime_checkable
 class Adaptive(Protocol):
-    """A part whose sparsity pattern covers candidate contacts; it says when the motion has left them."""
+    """A part whose sparsity pattern covers candidate contacts; `outgrown` once the motion goes beyond them."""
 
     outgrown: bool
 
@@ -112,7 +112,7 @@ def with_role(parts: Iterable[Part], role: type) -> list[Any]:
 def owners(model: Model) -> dict[str, Stateful]:
     """Fields and parts that keep something from step to step, by the names under which it is saved.
 
-    ValueError where two would have one name, and the one's state be taken for the other's.
+    ValueError where two would have one name, so that states could be mistaken for each other.
     """
     named: list[tuple[str, Stateful]] = [(f"fields/{field.name}", field) for field in model.fields]
     named += [(f"parts/{name_of(part)}", part) for part in with_role(model.parts, Stateful)]

@@ -108,8 +108,8 @@ class StepStatistics(NamedTuple):
 class Ledger:
     """Energy of the whole model [J]: stored now, and turned over since the stage began.
 
-    numerical: taken out by the time scheme, negative where it put energy in; see `riser_soil.results.energy_ledger`.
-    ahead: taken by forces of contact and soil, which act with their value at the end of a step, beyond their mean.
+    numerical: removed by the time scheme, negative where it put energy in; see `riser_soil.results.energy_ledger`.
+    ahead: removed by forces of contact and soil, which act with their value at the end of a step, beyond their mean.
     residual = change of (kinetic + strain + potential) + dissipated + numerical - work, positive when energy appears
     from nowhere; nan in a static stage, whose first shape need not be an equilibrium.
     turned_over: the largest yet of kinetic energy, strain energy, energy dissipated, and work, by their sizes; the
@@ -131,8 +131,8 @@ class Ledger:
 
     @property
     def made(self) -> float:
-        """What the time scheme has truly taken out [J], or put in: `numerical`, less what forces ahead of their mean
-        book with the other sign.
+        """Energy that the time scheme itself has removed [J], negative where it added some: `numerical`, less the share
+        of the other sign that is due to forces ahead of their mean.
         """
         whole = self.numerical + self.ahead
         if self.numerical * self.ahead >= 0.0:

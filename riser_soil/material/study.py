@@ -26,7 +26,7 @@ CLOSED = 1e-9  # how far a cycle may end from its beginning, over its width
 
 
 def study(scene: Scene, folder: Path, path: Path | None = None, depth: float | None = None, force: bool = False) -> str:
-    """Drive a point and leave curve, cycles and picture in a folder; what to tell of it.
+    """Drive a point and write curve, cycles and picture to a folder; a summary to print.
 
     path: CSV file, or None for growing cycles of shear. depth: below the seabed [m]. force: replace files that this
     program has written. Raises SceneError or SolveError before anything is written.

@@ -1,18 +1,21 @@
-"""Checkpoints of a run: when they are due, what tells them apart, and the last one of a folder."""
+"""Checkpoints of a run: when they are due, their writing, and the last one of a folder."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from riser_soil import __version__
 from riser_soil.assembly import Assembly, sized
-from riser_soil.core.communicator import Communicator
+from riser_soil.core.communicator import Communicator, raised_on_all_ranks
 from riser_soil.core.saved_state import Saved
-from riser_soil.errors import RiserSoilError, SceneError
+from riser_soil.errors import SceneError
+from riser_soil.interruption import leave_between_steps, uninterrupted
 from riser_soil.results.checkpoint_file import About, read_checkpoint
 from riser_soil.results.folder import CHECKPOINT
+from riser_soil.results.record import Recorder
 from riser_soil.scene.identity import first_difference, identity_of
 from riser_soil.scene.output import Checkpoint
 from riser_soil.scene.scene import Scene
@@ -24,30 +27,57 @@ AT_END = 0.1  # of the time between checkpoints, after which there is one at a s
 class CheckpointSchedule:
     """Says after each step whether a checkpoint is due: by wall time, at the end of a stage, at an interruption.
 
-    asked: None for no checkpoints at all.
+    settings: None for no checkpoints at all.
     """
 
-    def __init__(self, asked: Checkpoint | None, comm: Communicator) -> None:
-        self._asked, self._comm = asked, comm
-        self.written()
+    def __init__(self, settings: Checkpoint | None, comm: Communicator) -> None:
+        self._settings, self._comm = settings, comm
+        self.restart()
 
     def due(self, last: bool, ends_run: bool, leaving: bool) -> bool:
         """Collective. last: of its stage; ends_run: of the run; leaving: before its time."""
-        if self._asked is None:
+        if self._settings is None:
             return False
-        if leaving or (ends_run and self._asked.keep):
+        if leaving or (ends_run and self._settings.keep):
             return True
-        wait = AT_END * self._asked.every if last else self._asked.every
+        wait = AT_END * self._settings.every if last else self._settings.every
         return bool(self._comm.bcast(not ends_run and time.monotonic() - self._last > wait))
 
-    def written(self) -> None:
-        """The time counts from now."""
+    def restart(self) -> None:
+        """Count the time from now, as a checkpoint has been written."""
         self._last = time.monotonic()
 
 
-def about(assembly: Assembly) -> About:
-    """Version, ranks and scene of a run, for its checkpoints; asked at its start, as files of the scene may change."""
-    return About(__version__, assembly.comm.size, identity_of(assembly.scene))
+class RunCheckpoints:
+    """Checkpoints that a run writes. recorder: None off rank 0.
+
+    A checkpoint has the version, ranks and scene of the run's start, as files of the scene may change.
+    """
+
+    def __init__(self, assembly: Assembly, recorder: Recorder | None) -> None:
+        settings, self._comm, self._recorder = assembly.scene.output.checkpoint, assembly.comm, recorder
+        self.wanted, self._schedule = settings is not None, CheckpointSchedule(settings, assembly.comm)
+        if self.wanted and recorder is not None:
+            self._about = About(__version__, assembly.comm.size, identity_of(assembly.scene))
+
+    def due(self, last: bool, ends_run: bool, leaving: bool) -> bool:
+        """Whether one is due after a step, see `CheckpointSchedule`; may leave the run where it is interrupted.
+        Collective.
+        """
+        if self.wanted:
+            leave_between_steps()
+        return self._schedule.due(last, ends_run, leaving)
+
+    def write(self, gather: Callable[[], Saved], ended: str | None) -> None:
+        """Write the state after a recorded step; collective. gather: this rank's state; ended: name of the stage that
+        the step is the last one of, if any.
+        """
+        with uninterrupted():
+            shares = self._comm.gather(gather())
+            if self._recorder is not None:
+                assert shares is not None
+                self._recorder.checkpoint(replace(self._about, ended=ended), shares)
+        self._schedule.restart()
 
 
 def last_checkpoint(folder: Path, scene: Scene, with_peaks: bool, comm: Communicator) -> Saved | None:
@@ -65,14 +95,9 @@ def last_checkpoint(folder: Path, scene: Scene, with_peaks: bool, comm: Communic
 def mine_of(comm: Communicator, read: Callable[[], list[Saved] | None]) -> Saved | None:
     """This rank's share of what the first one reads, or the error that it meets; collective."""
     shares: list[Saved] | None = None
-    failure: RiserSoilError | None = None
-    if comm.rank == 0:
-        try:
+    with raised_on_all_ranks(comm):
+        if comm.rank == 0:
             shares = read()
-        except RiserSoilError as err:
-            failure = err
-    if failure := comm.bcast(failure):
-        raise failure
     if not comm.bcast(shares is not None):
         return None
     mine: Saved = comm.scatter(shares)

@@ -1,4 +1,4 @@
-"""Checkpoint of a run, checkpoint.npz: the saved state of all ranks, with what tells whether a run can go on from it.
+"""Checkpoint of a run, checkpoint.npz: the saved state of all ranks, with what a run that resumes must have in common.
 
 A zip of arrays as numpy writes them, each with a checksum. `about` is JSON; `0/stepper/before/u` is rank 0's array of
 that name, see `saved_state`.

@@ -71,7 +71,7 @@ def _follow(course: Course, t: float, after: Array) -> None:
 def _follow_peak(at: Course, row: int, i: int, value: float, last: float, bend: float, step: float) -> None:
     """A figure's largest value, or its least one with the other sign, after a step; bend: |D|."""
     k = row, i
-    if at.since[k] < AFTER:  # what a step tells of the peak before it
+    if at.since[k] < AFTER:  # a step that still belongs to the peak
         at.around[k] = max(at.around[k], bend)
         if not step <= at.longest[k] and not math.isnan(step):
             at.longest[k] = step

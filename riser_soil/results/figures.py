@@ -38,7 +38,7 @@ _ORDER = (
 )
 _FIGURES = [figure for _, figure in outputs.figures(_ORDER)]
 FIGURE_NAMES = frozenset(figure.name for figure in _FIGURES)
-# Left out where nothing is known of what they need, or they are not wanted.
+# Figures that are missing where what they need is unknown, or where they are not wanted.
 _SOMETIMES = frozenset(figure.name for output in outputs.of_instant() if output.needs for figure in output.figures)
 _SIZE = sum(figure.size for figure in _FIGURES)
 _FIRST = itertools.accumulate((figure.size for figure in _FIGURES), initial=0)

@@ -1,7 +1,7 @@
 """Functional load effects of code checks from the end of another run: `code_check.N.functional_run`.
 
-A current acts in all stages of a scene, and an offset of the vessel from the beginning. What is functional is then
-found by a run of the same line without them.
+A current acts in all stages of a scene, and an offset of the vessel from the beginning. What is functional then
+follows from a run of the same line without them.
 """
 
 from __future__ import annotations

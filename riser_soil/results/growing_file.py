@@ -131,8 +131,8 @@ def append_rows(dataset: h5py.Dataset, rows: object) -> None:
 
 @contextmanager
 def cutting_back(file: GrowingFile) -> Iterator[h5py.File]:
-    """The HDF5 file of a run that resumes, to be changed; ResultsError where it is damaged, which HDF5 tells by all
-    kinds of errors.
+    """The HDF5 file of a run that resumes, to be changed; ResultsError where it is damaged, for which HDF5
+    raises all kinds of errors.
     """
     try:
         with appending(file) as store:
@@ -149,7 +149,7 @@ def cutting_back(file: GrowingFile) -> Iterator[h5py.File]:
 def reading(path: Path) -> h5py.File:
     """The HDF5 file, beside whoever else reads it, in this process too; OSError where it can't be read.
 
-    With HDF5's lock, which tells the writer of the reader, unless there are no locks or others have opened it without.
+    HDF5's lock shows the reader to the writer, unless there are no locks or others have opened it without.
     """
     try:
         return h5py.File(path, "r")

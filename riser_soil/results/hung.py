@@ -1,8 +1,8 @@
 """What is recorded of bodies, joints and clearances: their variables in results.nc, and values at a state.
 
 The clearance of two lines is the least distance of polygons through their nodes. Two segments p + s d and q + t e, s
-and t from 0 to 1, are nearest where the gradient of their squared distance is zero, or on the border: s and t are found
-in turn, each kept within its segment (Ericson, Real-Time Collision Detection, 2005, section 5.1.9).
+and t from 0 to 1, are nearest where the gradient of their squared distance is zero, or on the border: s and t follow in
+turn, each kept within its segment (Ericson, Real-Time Collision Detection, 2005, section 5.1.9).
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ class HungReader:
             variables |= {f"{pair.path}/{key}": Variable(("time",), *texts) for key, texts in _OF_PAIR.items()}
         return variables
 
-    def look(self, state: State) -> dict[str, Array]:
+    def values(self, state: State) -> dict[str, Array]:
         """Values at an accepted state."""
         values: dict[str, Array] = {}
         for name, body in self._bodies.items():
@@ -92,7 +92,7 @@ class HungReader:
                 of_each = zip(self._assembly.scene.joints, of_joints, strict=True)
                 values |= {f"joints/{joint}/{key}": row for joint, row in of_each}
         for pair in self._pairs:
-            values |= {f"{pair.path}/{key}": value for key, value in zip(_OF_PAIR, pair.look(), strict=True)}
+            values |= {f"{pair.path}/{key}": value for key, value in zip(_OF_PAIR, pair.nearest(), strict=True)}
         return values
 
     def warnings(self, figures: Mapping[str, Any]) -> list[str]:
@@ -133,7 +133,7 @@ class _Pair:
         self._lines = [assembly.lines[name].line for name in given.between]
         self._counts = [np.array(apart_from_joints(assembly.scene, name, given.beyond)) for name in given.between]
 
-    def look(self) -> tuple[Array, Array, Array]:
+    def nearest(self) -> tuple[Array, Array, Array]:
         """Distance and both arc lengths, each without axes [m]."""
         (one, other), (counts, other_counts) = self._lines, self._counts
         both = [(line.to_global(line.x), 0.5 * line.outer_diameter) for line in (one, other)]

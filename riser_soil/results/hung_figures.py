@@ -63,6 +63,6 @@ def hung_reader(assembly: Assembly) -> HungReader | None:
     return HungReader(assembly)
 
 
-def looked_at(reader: HungReader | None, state: State) -> dict[str, Array]:
-    """Values at an accepted state by path."""
-    return {} if reader is None else reader.look(state)
+def hung_values(reader: HungReader | None, state: State) -> dict[str, Array]:
+    """Values of bodies, joints and clearances at an accepted state by path; none without a reader."""
+    return {} if reader is None else reader.values(state)

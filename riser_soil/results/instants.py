@@ -1,7 +1,7 @@
-"""Records of a run: a look at each accepted state, and all that follows from many looks at once.
+"""Records of a line: a copy of each accepted state, and all results that follow from many copies at once.
 
-A look is what has to be copied before the riser moves on, a few vectors. All that follows from them is found for many
-steps together, as each of its operations takes an interpreter longer than the numbers of one instant do.
+Copied are the few vectors that change as the riser moves on. The results are computed for many steps together, as each
+of their operations takes an interpreter longer than the numbers of one instant do.
 """
 
 from __future__ import annotations
@@ -31,10 +31,11 @@ if TYPE_CHECKING:
     from riser_soil.contact.contact import ContactResults
 
 
-class Look(NamedTuple):
-    """Vectors that later steps leave as they are: inside, see `SectionInput`, and of each contact, see
-    `ContactResults.within`. pressure: change of that inside since the first stage began [Pa]. ground: quantities of the
-    ground, by their names in a `Record`.
+class StateCopy(NamedTuple):
+    """A line's accepted state, in vectors that later steps don't change.
+
+    inside: a `SectionInput` in one vector; contacts: `ContactResults` of each contact in one. pressure: change of that
+    inside since the first stage began [Pa]. ground: quantities of the ground, by their names in a `Record`.
     """
 
     inside: Array
@@ -44,7 +45,7 @@ class Look(NamedTuple):
 
 
 class InstantReader:
-    """Looks at a run's states, and makes records of them; on the rank that holds the riser.
+    """Copies a run's states, and makes records of them; on the rank that has the riser.
 
     fields: names of the quantities wanted, of those of contact and ground. checks: its code checks, None for none.
     """
@@ -56,12 +57,12 @@ class InstantReader:
         self._checks = checks
 
     def begin_stage(self, name: str) -> None:
-        """Begin a stage; records of all looks of the stage before have been made."""
+        """Begin a stage; records of all copies of the stage before have been made."""
         if self._checks is not None:
             self._checks.begin_stage(name)
 
-    def look(self, stepper: TimeStepper, lay_sections: bool = False) -> Look:
-        """Look at the accepted state.
+    def copy(self, stepper: TimeStepper, lay_sections: bool = False) -> StateCopy:
+        """A copy of the accepted state.
 
         lay_sections: where the riser lies now; they are laid anyway as long as they are nowhere.
         """
@@ -72,7 +73,7 @@ class InstantReader:
             of_one = self._inside(inside[None])
             arc, _, _ = self._touchdown(of_one, self._results_of_contacts([own[None] for own in contact_results]))
             self._sections.lay(of_one.position[0], of_one.tangent[0], float(arc[0]))
-        return Look(inside, self._riser.pressure_change(state.t), contact_results, self._ground(state))
+        return StateCopy(inside, self._riser.pressure_change(state.t), contact_results, self._ground(state))
 
     def _ground(self, state: State) -> dict[str, Array]:
         wanted = self._fields if self._riser.contacts else ()
@@ -85,23 +86,23 @@ class InstantReader:
             values["force_on_soil"] = self._on_soil(state)
         return values
 
-    def record_of(self, looks: Sequence[Look], misfits: bool = False) -> Record:
-        """All that is recorded of looks, each of them once and in their order: embedments only grow.
+    def record_of(self, copies: Sequence[StateCopy], misfits: bool = False) -> Record:
+        """All results of copied states, each of them once and in their order: embedments only grow.
 
         misfits: whether those of the elements' bending are in it.
         """
-        inside = self._inside(np.stack([each.inside for each in looks]))
-        packed = [np.stack(vectors) for vectors in zip(*(each.contacts for each in looks), strict=True)]
+        inside = self._inside(np.stack([each.inside for each in copies]))
+        packed = [np.stack(vectors) for vectors in zip(*(each.contacts for each in copies), strict=True)]
         contacts = self._results_of_contacts(packed)
         pressed = np.sum([np.zeros(inside.effective_tension.shape), *(of.force_per_length for of in contacts)], axis=0)
-        pressure = np.array([each.pressure for each in looks])
+        pressure = np.array([each.pressure for each in copies])
         values = riser_values(self._riser, inside, pressed, pressure)
         if self._checks is not None:
             values |= code_values(self._riser, self._checks, inside, pressed, pressure)
         if misfits:
             smooth, steep = bending_misfits(self._riser.line, self._riser.elements, inside.ends)
             values |= {"smooth_misfit": smooth, "steep_misfit": steep}
-        values |= self._touch(inside, contacts) | stacked([each.ground for each in looks])
+        values |= self._touch(inside, contacts) | stacked([each.ground for each in copies])
         return Record(self._riser.line.arc, values)
 
     def _inside(self, numbers: Array) -> SectionForces:

@@ -26,7 +26,7 @@ from riser_soil.core.step_outputs import OF_STEP, REMOVED
 from riser_soil.results.growing_file import GrowingFile, append_rows, appending, behind, cutting_back
 from riser_soil.results.netcdf_layout import Variable, lay_out, values_in
 
-_SPOKEN = {  # parts whose names don't tell what dissipates or works
+_SPOKEN = {  # parts whose names don't say what dissipates or works
     "contents": "contents that flow or are uneven",
     "morison": "drag and other forces of the water's motion",
     "vortices": "force of shed vortices across the flow",

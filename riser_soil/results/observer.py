@@ -1,6 +1,6 @@
 """Observer of a run: reads the parts' states on all ranks after each step, and passes them to the recorder.
 
-Steps are buffered, as the values of riser and contact are computed for many steps together, see `instants`.
+Steps are buffered, as the values of riser and contact are computed for many steps together (`step_buffer`).
 """
 
 from __future__ import annotations
@@ -8,62 +8,35 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
-from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
 from riser_soil.assembly import Assembly
 from riser_soil.checks.inventory import inventory
-from riser_soil.core.arrays import Array
-from riser_soil.core.communicator import Communicator
+from riser_soil.core.communicator import raised_on_all_ranks
 from riser_soil.core.part import Energy
 from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
-from riser_soil.core.snapshot import (
-    Records,
-    SoilSnapshot,
-    StepRecord,
-    StepStatistics,
-    stacked,
-)
-from riser_soil.errors import Interruption, MemoryShortageError, RiserSoilError, SolveError
-from riser_soil.interruption import leave_between_steps, uninterrupted
-from riser_soil.results.checkpoint import CheckpointSchedule, about
+from riser_soil.core.snapshot import SoilSnapshot, StepRecord, StepStatistics, stacked
+from riser_soil.errors import Interruption, MemoryShortageError, SolveError
+from riser_soil.interruption import uninterrupted
+from riser_soil.results.checkpoint import RunCheckpoints
 from riser_soil.results.energy_ledger import EnergyLedger
 from riser_soil.results.functional_run import line_checks
-from riser_soil.results.hung_figures import hung_reader, looked_at
-from riser_soil.results.instants import InstantReader, Look
+from riser_soil.results.hung_figures import hung_reader, hung_values
+from riser_soil.results.instants import InstantReader
 from riser_soil.results.peaks import RunPeaks
-from riser_soil.results.plausibility import Plausibility
+from riser_soil.results.plausibility_checks import PlausibilityChecks
 from riser_soil.results.record import Keeping, Recorder
 from riser_soil.results.run_clock import RunClock
 from riser_soil.results.run_facts import facts_of, known_fields
-from riser_soil.results.schedule import DueOutputs, Schedule
+from riser_soil.results.schedule import Schedule
 from riser_soil.results.screen import Progress, print_summary
-from riser_soil.results.soil_plausibility import PressedSoil, SoilPlausibility
+from riser_soil.results.step_buffer import BufferedStep, StepBuffer
 from riser_soil.scene.dump import dump_scene
-from riser_soil.scene.output import Checkpoint
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 from riser_soil.solve.dynamic_relaxation import RelaxationResult
 from riser_soil.solve.time_stepper import AcceptedStep, TimeStepper
-
-MOST_STEPS, MOST_NUMBERS = 64, 1 << 20  # in the buffer, before it is written
-
-
-class BufferedStep(NamedTuple):
-    """An accepted step as it waits in the buffer: its record, what is due to be written of it, and its state.
-
-    looks: state of each line, by name; hung: values of bodies and joints; pressed: the soil under the riser, if
-    any, where the step is recorded; soil: its fields where these are due.
-    """
-
-    record: StepRecord
-    due: DueOutputs
-    looks: dict[str, Look]
-    hung: dict[str, Array]
-    pressed: PressedSoil | None
-    soil: SoilSnapshot | None
 
 
 class Observer:
@@ -85,12 +58,10 @@ class Observer:
         checks = {name: line_checks(line, name) for name, line in lines.items()} if recorder is not None else {}
         self._instants = {name: InstantReader(line, fields[name], checks.get(name)) for name, line in lines.items()}
         self._hung = hung_reader(assembly)
-        self._buffer: list[BufferedStep] = []  # steps not yet written
-        self._plausibility = {name: Plausibility(line) for name, line in lines.items()}
-        self._soil_plausibility = _soil_plausibility(assembly)
+        self._buffer = StepBuffer()
+        self._plausibility = PlausibilityChecks(assembly, self._hung)
         self._inventory = inventory(assembly)
-        self._checkpoints = CheckpointSchedule(_checkpoint_settings(assembly), assembly.comm)
-        self._about = about(assembly) if recorder is not None and _checkpoint_settings(assembly) is not None else None
+        self._checkpoints = RunCheckpoints(assembly, recorder)
 
     @classmethod
     @contextmanager
@@ -113,10 +84,10 @@ class Observer:
         known = facts_of(assembly, warnings)
         with Progress(enabled=assembly.comm.rank == 0) as progress:
             recorder = None
-            with _on_all_ranks(assembly.comm), uninterrupted():
+            with raised_on_all_ranks(assembly.comm), uninterrupted():
                 if assembly.comm.rank == 0:
                     text, fields = dump_scene(assembly.scene), known_fields(assembly)
-                    settings = _checkpoint_settings(assembly)
+                    settings = assembly.scene.output.checkpoint
                     keeping = Keeping(goes_on, end=settings is not None and settings.keep)
                     arcs = {name: line.line.arc for name, line in assembly.lines.items()}
                     reader = hung_reader(assembly)
@@ -151,10 +122,7 @@ class Observer:
         self._relaxed = 0
         for reader in self._instants.values():
             reader.begin_stage(stage.name)
-        for each in self._plausibility.values():
-            each.begin_stage(stage)
-        if self._soil_plausibility is not None:
-            self._soil_plausibility.begin_stage(stage)
+        self._plausibility.begin_stage(stage)
 
     def _show_progress(self, stage: Stage) -> None:
         self._progress.begin_stage(stage.name, stage.kind, stage.end)
@@ -163,8 +131,8 @@ class Observer:
         """Record the state before all stages, where no static stage comes first."""
         soil = self._soil()
         if self._recorder is not None:
-            records = {name: reader.record_of([reader.look(stepper)]) for name, reader in self._instants.items()}
-            self._recorder.begin_at(records, soil, stacked([looked_at(self._hung, stepper.now)]))
+            records = {name: reader.record_of([reader.copy(stepper)]) for name, reader in self._instants.items()}
+            self._recorder.begin_at(records, soil, stacked([hung_values(self._hung, stepper.now)]))
             if self._peaks is not None:
                 self._peaks.record([0.0], records)
 
@@ -176,89 +144,48 @@ class Observer:
         soil = self._soil() if due.pictures or not isinstance(self._stage, DynamicStage) else None
         change = self._balance.add(stepper.energy, step)
         self._progress.update(step.t, step.dt, step.solution.iterations)
-        if last and self._soil_plausibility is not None:
-            self._soil_plausibility.look_around()
+        if last:
+            self._plausibility.measure_soil_boundary()
         if self._recorder is not None:
             iterations = step.solution.iterations + self._relaxed
             health = StepStatistics(iterations, step.dt, change, step.cuts, stepper.local_error)
             record = StepRecord(step.t, health, self._balance.ledger)
             at_rest = due.series and isinstance(self._stage, StaticStage)
-            looks = {name: reader.look(stepper, at_rest) for name, reader in self._instants.items()}
-            hung = looked_at(self._hung, stepper.now)
-            under = self._soil_plausibility if due.series else None
-            pressed = None if under is None else under.pressed(stepper.now)
-            self._buffer.append(BufferedStep(record, due, looks, hung, pressed, soil))
-            full = len(self._buffer) >= self._buffer_size or soil is not None  # whose fields are not kept for long
-            if last or full or self._recorder.flush_is_due:
+            lines = {name: reader.copy(stepper, at_rest) for name, reader in self._instants.items()}
+            hung = hung_values(self._hung, stepper.now)
+            pressed = self._plausibility.pressed_soil(stepper.now) if due.series else None
+            self._buffer.add(BufferedStep(record, due, lines, hung, pressed, soil))
+            static = isinstance(self._stage, StaticStage)
+            if last or static or self._buffer.full or self._recorder.flush_is_due:
                 self.flush()
         self._relaxed = 0
         self._clock.add("output", since)
 
-    @property
-    def _buffer_size(self) -> int:
-        """Number of steps to buffer before they are written."""
-        if isinstance(self._stage, StaticStage):
-            return 1
-        numbers = sum(look.inside.size for look in self._buffer[0].looks.values())
-        return max(1, min(MOST_STEPS, MOST_NUMBERS // numbers))
-
     def flush(self) -> None:
         """Pass all buffered steps to the recorder, the peaks and the checks of plausibility."""
-        steps, self._buffer, recorder = self._buffer, [], self._recorder
+        steps, recorder = self._buffer.emptied(), self._recorder
         if not steps or recorder is None or recorder.closed:
             return
         made, pictured = [each.record for each in steps], any(each.due.pictures for each in steps)
-        looks = {name: [each.looks[name] for each in steps] for name in self._instants}
-        records = {name: reader.record_of(looks[name], misfits=pictured) for name, reader in self._instants.items()}
+        copies = {name: [each.lines[name] for each in steps] for name in self._instants}
+        records = {name: reader.record_of(copies[name], misfits=pictured) for name, reader in self._instants.items()}
         hung = stacked([each.hung for each in steps])
         recorder.accept(made, [each.due for each in steps], records, steps[-1].soil, hung)
         if self._peaks is not None:
             self._peaks.record([step.t for step in made], records)
-        self._check_plausibility(recorder, steps, records)
-
-    def _check_plausibility(self, recorder: Recorder, steps: Sequence[BufferedStep], records: Records) -> None:
-        """Check whether what was recorded is plausible, for the summary's warnings; where pictures are made whether the
-        elements resolve the bending, too.
-        """
-        recorded = [n for n, each in enumerate(steps) if each.due.series]
-        if not recorded:
-            return
-        pictured = [n for n in recorded if steps[n].due.pictures]
-        times, stage = np.array([recorder.time_at(each.record.t) for each in steps]), recorder.summary.stages[-1]
-        for name, plausibility in self._plausibility.items():
-            if pictured:
-                plausibility.look_closely(times[pictured], records[name].at(pictured))
-            plausibility.look(times[recorded], records[name].at(recorded))
-            tally = stage.lines[name]
-            tally.implausible, tally.indicators.bending = plausibility.warnings(), plausibility.bending()
-        if self._soil_plausibility is not None:
-            name = self._assembly.name_on_soil
-            for n in recorded:
-                if (pressed := steps[n].pressed) is not None:
-                    self._soil_plausibility.look(float(times[n]), pressed, records[name].at(n))
-            stage.lines[name].implausible += self._soil_plausibility.warnings()
-        if self._hung is not None:
-            stage.implausible = tuple(self._hung.warnings(stage.hung.nested))
+        times = np.array([recorder.time_at(step.t) for step in made])
+        self._plausibility.check(steps, times, records, recorder.summary.stages[-1])
 
     def checkpoint(self, gather: Callable[[], Saved], last: bool, leaving: bool) -> None:
-        """Write the state after a recorded step, where it is due, see `CheckpointSchedule.due`; collective.
+        """Write the state after a recorded step, where a checkpoint is due; collective.
 
-        gather: this rank's state.
+        gather: this rank's state. last: of its stage; leaving: before its time.
         """
         ends_run = last and self._stage is self._assembly.scene.stages[-1]
-        if _checkpoint_settings(self._assembly) is not None:
-            leave_between_steps()
-        if not self._checkpoints.due(last, ends_run, leaving):
-            return
-        since = time.perf_counter()
-        with uninterrupted():
-            shares = self._assembly.comm.gather(gather())
-            if self._recorder is not None:
-                assert shares is not None
-                assert self._about is not None
-                self._recorder.checkpoint(replace(self._about, ended=self._stage.name if last else None), shares)
-        self._checkpoints.written()
-        self._clock.add("checkpoints", since)
+        if self._checkpoints.due(last, ends_run, leaving):
+            since = time.perf_counter()
+            self._checkpoints.write(gather, self._stage.name if last else None)
+            self._clock.add("checkpoints", since)
 
     def record_last(self, end: SolveError | MemoryShortageError | Interruption) -> None:
         """Write the last accepted step of a run that ends before its time; collective where the ranks end together."""
@@ -330,29 +257,5 @@ class Observer:
         owners: dict[str, Stateful] = {} if self._recorder is None else {"recorder": self._recorder}
         owners |= {} if self._peaks is None else {"peaks": self._peaks}
         owners |= {"schedule": self._schedule, "ledger": self._balance}
-        for name, reader in self._instants.items():
-            of_line: dict[str, Stateful] = {"instants": reader, "plausibility": self._plausibility[name]}
-            owners |= {f"{kind}/{name}" if name else kind: owner for kind, owner in of_line.items()}
-        return owners if self._soil_plausibility is None else owners | {"soil plausibility": self._soil_plausibility}
-
-
-def _soil_plausibility(assembly: Assembly) -> SoilPlausibility | None:
-    lying = assembly.line_on_soil
-    return None if lying is None or lying.soil is None else SoilPlausibility(lying, lying.soil)
-
-
-def _checkpoint_settings(assembly: Assembly) -> Checkpoint | None:
-    return assembly.scene.output.checkpoint
-
-
-@contextmanager
-def _on_all_ranks(comm: Communicator) -> Iterator[None]:
-    """Raise an error of one rank in the block on all ranks."""
-    failure: RiserSoilError | None = None
-    try:
-        yield
-    except RiserSoilError as err:
-        failure = err
-    for error in comm.allgather(failure):
-        if error is not None:
-            raise error
+        owners |= {f"instants/{name}" if name else "instants": reader for name, reader in self._instants.items()}
+        return owners | self._plausibility.owners

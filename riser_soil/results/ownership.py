@@ -52,7 +52,7 @@ def quoted(text: str) -> str:
 
 
 def sealed(text: str) -> str:
-    """The text below a line that tells whether it is still the same."""
+    """The text below a line with its checksum, by which changes of it are known."""
     return _SEAL.format(hashlib.sha256(text.encode()).hexdigest()) + text
 
 
@@ -135,7 +135,7 @@ def _own_scene(path: Path) -> bool:
 def _of_earlier_version(folder: Path) -> bool:
     names = SUMMARY, SERIES, FORMER_RISER_NUMBERS
     own = all((folder / name).is_file() and _OWN[name](folder / name) for name in names)
-    return own and not _tells(folder / FORMER_RISER_NUMBERS, lambda file: "source" in file.attrs)
+    return own and not _says(folder / FORMER_RISER_NUMBERS, lambda file: "source" in file.attrs)
 
 
 def _own_summary(path: Path) -> bool:
@@ -152,16 +152,16 @@ def _own_xdmf(path: Path) -> bool:
 
 
 def _own_series(path: Path) -> bool:
-    return _tells(path, lambda file: str(file.attrs.get("source", "")).startswith(PROGRAM))
+    return _says(path, lambda file: str(file.attrs.get("source", "")).startswith(PROGRAM))
 
 
 def _own_numbers(path: Path) -> bool:
     """Earlier versions did not sign them."""
-    return _tells(path, lambda file: "source" in file.attrs or all(map(_FRAMES.fullmatch, file)))
+    return _says(path, lambda file: "source" in file.attrs or all(map(_FRAMES.fullmatch, file)))
 
 
-def _tells(path: Path, question: Callable[[h5py.File], bool]) -> bool:
-    """The answer of an HDF5 file; no for a file that isn't one."""
+def _says(path: Path, question: Callable[[h5py.File], bool]) -> bool:
+    """Whether something is so in an HDF5 file; false for a file that isn't one."""
     try:
         with reading(path) as file:
             return question(file)

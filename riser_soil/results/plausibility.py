@@ -39,7 +39,7 @@ _FOLLOWED = (
 
 
 class Plausibility:
-    """Plausibility of a stage's results at the recorded instants, by warnings; on the rank that holds the line.
+    """Plausibility of a stage's results at the recorded instants, by warnings; on the rank that has the line.
 
     EA [N] and radius [m] (nn,): the smaller and the larger of what the two elements beside a node have. buckling [N]
     (nn,): the larger of their buckling loads, pi^2 EI/L^2 by the smaller EI.
@@ -59,8 +59,10 @@ class Plausibility:
         self._unit = "of the load" if stage.kind == "static" else "s"
         self._worst = LargestAlong(_FOLLOWED)
 
-    def look(self, times: Array, record: Record) -> None:
-        """times (nt,): s of the run (static stages: load factor), of the record's instants."""
+    def follow(self, times: Array, record: Record) -> None:
+        """Take in a record's strains and forces. times (nt,): of its instants, s of the run (static stages: load
+        factor).
+        """
         tension = record.effective_tension
         at_nodes = {
             "axial strain": np.abs(tension) / self.EA,
@@ -71,7 +73,7 @@ class Plausibility:
         }
         self._worst.update(times, record.arc, at_nodes)
 
-    def look_closely(self, times: Array, record: Record) -> None:
+    def follow_bending(self, times: Array, record: Record) -> None:
         """Take in misfits of the elements' bending, which cost more, at some times (nt,) as above."""
         misfits = {"misfit": record.smooth_misfit, "smooth misfit": self._without_small(record.smooth_misfit)}
         self._worst.update(times, self._middle, misfits | {"steep misfit": self._without_small(record.steep_misfit)})
@@ -82,7 +84,7 @@ class Plausibility:
 
     def bending(self) -> dict[str, float]:
         """The largest misfit of the elements' bending, an estimate of the moment's error [N.m]: its size, share of the
-        stage's largest moment, arc [m] and time [s] or load factor. Empty before it has been looked at.
+        stage's largest moment, arc [m] and time [s] or load factor. Empty before `follow_bending`.
         """
         misfit = self._worst["misfit"]
         if math.isnan(misfit.t):

@@ -248,7 +248,7 @@ class Recorder:
     def flush(self) -> None:
         """Writes all records so far to disk: the frames, the series that gives their number, the summary.
 
-        Nothing before a run that goes on has been restored: its files tell more than is known here.
+        Nothing before a run that goes on has been restored: its files have more than is known here.
         """
         if self._untouched:
             return

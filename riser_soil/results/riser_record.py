@@ -1,4 +1,4 @@
-"""The riser at accepted states, as results tell it: forces and bending along it, reactions, largest values."""
+"""Results of the riser at accepted states: forces and bending along it, reactions, largest values."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def riser_record(riser: LineAssembly, stepper: TimeStepper) -> Record:
-    """The riser at the accepted state, without its touchdown; on the rank that holds it."""
+    """The riser at the accepted state, without its touchdown; on the rank that has it."""
     line, accepted = riser.line, stepper.newton.accepted
     inside = SectionForces(line, riser.elements, accepted.section_input(line, stepper.now))
     pressed = [contact.force_per_length(stepper.now) for contact in riser.contacts]

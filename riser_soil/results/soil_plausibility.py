@@ -70,7 +70,7 @@ def boundary_stress(soil: Soil, across: int) -> BoundaryStress:
 
 
 class SoilPlausibility:
-    """Plausibility of soil in a stage at the recorded instants, by warnings; on the rank that holds the riser."""
+    """Plausibility of soil in a stage at the recorded instants, by warnings; on the rank that has the riser."""
 
     def __init__(self, riser: LineAssembly, soil: SoilAssembly) -> None:
         self._riser, self._soil = riser, soil
@@ -91,8 +91,8 @@ class SoilPlausibility:
         stretch = math.nan if self._riser.scene.soil_moves else contact.stretch(state)
         return PressedSoil(contact.force_per_length(state), stretch)
 
-    def look(self, t: float, pressed: PressedSoil, record: Record) -> None:
-        """t: s of the run (static stages: load factor); pressed, record: of one state."""
+    def follow(self, t: float, pressed: PressedSoil, record: Record) -> None:
+        """Take in a state. t: s of the run (static stages: load factor); pressed, record: of one state."""
         self._touched = self._touched or bool(pressed.force.any())
         at, touchdown, nowhere = np.array([t]), record.touchdown_arc[None], np.full(1, np.nan)
         if self._bearing is not None:
@@ -100,15 +100,15 @@ class SoilPlausibility:
             self._worst.update(at, record.arc, {"force on soil": borne[None]})
         self._worst.update(at, touchdown, {"beyond block": self._beyond_block(record)[None]})
         self._worst.update(at, nowhere, {"stretch of soil": np.array([[pressed.stretch]])})
-        self._look_for_ground(record)
+        self._follow_lowest(record)
 
-    def _look_for_ground(self, record: Record) -> None:
+    def _follow_lowest(self, record: Record) -> None:
         down = not np.isnan(record.touchdown_arc)
         self._where = "touches down at" if down else "hangs with its lowest point at"
         self._lowest = record.touchdown_position if down else record.position[record.position[:, 2].argmin()]
 
-    def look_around(self) -> None:
-        """Look at the soil's boundaries, at the stage's end; collective."""
+    def measure_boundary(self) -> None:
+        """Take in the stress at the soil's boundaries, at the stage's end; collective."""
         across = int(np.abs(self._riser.line.direction[:2]).argmin())
         self._boundary = boundary_stress(self._soil.recovered(), across)
 

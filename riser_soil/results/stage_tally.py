@@ -91,7 +91,7 @@ class StageTally:
 
     @property
     def method(self) -> str | None:
-        """The method by which the equilibria of a stage without inertia were found."""
+        """Method by which the equilibria of a stage without inertia were computed; None with inertia."""
         if self.kind == "dynamic":
             return None
         if self.relaxations:

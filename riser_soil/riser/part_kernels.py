@@ -84,7 +84,7 @@ def add_work(part: tuple, first: Configuration, last: Configuration, work: Array
 
 @bound_by_type
 def keep(part: tuple, at: Configuration) -> None:
-    """Keep a part's history at the end of a step, in the configuration of the forces found last; of parts with one."""
+    """Store a part's history at the end of a step, where its forces were evaluated last; for parts with a history."""
 
 
 @njit

@@ -148,8 +148,8 @@ class CondensedSoil:
     """Part "soil" over a `CondensedTop`, see the module's text; in group E, as the whole soil is.
 
     outgrown: in the residual evaluated last a force acts on dofs that are not reached, or many more are reached than
-    bear one; what a line search has tried on its way there does not count. It stands behind all parts that load the
-    soil, as it looks at what these have added to the residual.
+    bear one; trials of a line search on its way there do not count. It comes after all parts that load the soil, as it
+    looks at what these have added to the residual.
     """
 
     name = "soil"

@@ -108,7 +108,7 @@ def _function(kernel: Any, owner: object) -> CFunction:
 
 
 def _compiled(kind: str, what: Any) -> Any:
-    """FFCx' objects for a form or an expression, and what holds them."""
+    """FFCx' objects for a form or an expression, and the module that owns them."""
     compile_in = _compiler(kind, what)
     name = ffcx.naming.compute_signature([what], str(FLAGS))
     folder = compiled.FOLDER / "forms" / name

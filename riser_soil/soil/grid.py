@@ -6,14 +6,13 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TypeVar
 
 import gmsh
 import numpy as np
 from mpi4py import MPI
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
-from riser_soil.errors import MeshError, SceneError
+from riser_soil.errors import MeshError
 from riser_soil.interruption import restoring_signal_handlers
 from riser_soil.soil import dolfinx_compat
 from riser_soil.soil.block import BlockSpec, make_block
@@ -21,8 +20,6 @@ from riser_soil.soil.dolfinx_compat import Nodes
 from riser_soil.soil.families import HEX8, TET10, Family
 from riser_soil.soil.mesh_file import HEXAHEDRON, cell_type, read_mesh
 from riser_soil.soil.mirror import Mirror, mirror_of
-
-T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,20 +88,6 @@ def file_grid(comm: MPI.Intracomm, path: Path, volumes: Sequence[str] = ()) -> D
     volumes: names of its physical groups by which the cells are numbered; each cell must lie in one of them.
     """
     return _grid(comm, lambda: read_mesh(path, volumes))
-
-
-def on_all_ranks(comm: MPI.Intracomm, make: Callable[[], T]) -> T:
-    """The result of `make`, each rank its own; a MeshError or SceneError of any rank is raised on all (collective)."""
-    result, failure = None, None
-    try:
-        result = make()
-    except (MeshError, SceneError) as err:
-        failure = err
-    failures = [(type(err), str(err)) for err in comm.allgather(failure) if err is not None]
-    if failures or result is None:
-        kind, text = failures[0]
-        raise kind(text) from failure
-    return result
 
 
 @contextmanager

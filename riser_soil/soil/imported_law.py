@@ -1,7 +1,7 @@
 """A law of one's own, from outside the package: `kind: imported` with the class that `from` names.
 
-The class has one of three methods, see `own_formula`: `update`, `evaluate` or `psi`. What it does wrong is found where
-it is first asked at some depths, by `law_trial`.
+The class has one of three methods, see `own_formula`: `update`, `evaluate` or `psi`. `law_trial` looks for its faults
+as it is first evaluated at some depths.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ else:
     np, imported_formula = LazyModule("numpy"), LazyModule("riser_soil.soil.imported_formula")
     law_trial = LazyModule("riser_soil.soil.law_trial")
 
-BEYOND = 1.01  # of the depths that a trial has seen: other ones
+BEYOND = 1.01  # times the greatest depth of the last trial: deeper points are tried anew
 
 
 class ImportedLaw(SoilLaw):

@@ -8,7 +8,7 @@ A class has one of three methods. Components are those of `mandel`, tension posi
   `start()` is the history at first: by default the initial stress, and zeros. `symmetric` says that the tangent is,
   `by_rate = False` that dt does not matter, `overstress(stress)` what share of its strength is used.
 - `evaluate(t, del_t, grad_del_u, stress, tangent, history)` of fenics-constitutive: flat arrays, overwritten; which of
-  its two last components is yz, and which xz, has changed between its releases, and is found by asking.
+  its two last components is yz, and which xz, has changed between its releases, and is found out by a trial.
 - `psi(eps)`: energy density by the strain since the start, a tensor of UFL; `psi(eps, depth)` with the depth [m].
 """
 
@@ -30,7 +30,7 @@ from riser_soil.soil import mandel
 from riser_soil.soil.law import PLACES, STRESS, StressUpdate
 from riser_soil.soil.law_source import LawError, failure_in_words
 
-SHORTEST, LONGEST = 1e-9, 1e12  # s; what stands for "at once" and "slow" where a law divides by the time
+SHORTEST, LONGEST = 1e-9, 1e12  # s; "at once" and "slow" for a law that divides by the time
 PROBE = 1e-6  # strain
 _WARNED = WeakSet[type]()  # classes of which a failure has been reported
 

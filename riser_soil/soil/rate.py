@@ -4,8 +4,8 @@
 
 is the strength over that of slow shear, the rate that of plastic shear strain, √3 times that of the equivalent plastic
 strain Δp/Δt: once the stress stays, all of the rate of shear. Its logarithm as in I. Einav & M. F. Randolph (see
-`remoulding`), who take the rate of all strain; here clay that is held relaxes with time, and stress does not jump where
-a motion stops. At rates below the reference strength is that of slow shear.
+`remoulding`), who take the rate of all strain; here clay at constant strain relaxes with time, and stress does not jump
+where a motion stops. At rates below the reference strength is that of slow shear.
 
 With Δp0 = reference Δt/√3, the plastic strain of a step at the reference rate, backward Euler brings an elastic trial q
 back by 3G Δp to q - 3G Δp = L r. Above Δp0 and with a = L µ/ln 10, x = 3G Δp/a solves

@@ -10,6 +10,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.communicator import raised_on_all_ranks
 from riser_soil.core.part import Energy, Forces, MatrixBlock, State, Traits, Weights, Work
 from riser_soil.core.roles import Limited, UpdatedLagrangian, Yielding
 from riser_soil.core.saved_state import Saved, Stateful, within
@@ -18,7 +19,7 @@ from riser_soil.errors import MeshError, SceneError
 from riser_soil.soil import kernels, mandel
 from riser_soil.soil.families import FOLDS, skewness
 from riser_soil.soil.field import GatheredMesh, SoilField, components, gather, gather_rows, top_of
-from riser_soil.soil.grid import DistributedMesh, on_all_ranks
+from riser_soil.soil.grid import DistributedMesh
 from riser_soil.soil.large_strain import carried_depths, carried_rows, moved_on
 from riser_soil.soil.law import PLASTIC_STRAIN, STRESS, Formula, StressUpdate
 from riser_soil.soil.layered import LayeredWeight
@@ -69,7 +70,8 @@ class Soil:
         self._ground = _Ground(fields.with_histories(law), weight, K0, start == "geostatic")
         depth, self._zero_depth = level - grid.nodes.points[:, 2], ZERO_DEPTH * float(grid.high[2] - grid.low[2])
         self._depth = np.where(depth > self._zero_depth, depth, 0.0)  # of the nodes, before anything moved
-        self._initial, self._unit_weight, self.law = on_all_ranks(grid.nodes.comm, self._material)
+        with raised_on_all_ranks(grid.nodes.comm):
+            self._initial, self._unit_weight, self.law = self._material()
         roles = Limited, Stateful, UpdatedLagrangian, Yielding
         self.traits = Traits("F" if inertia else "E", self.law.symmetric, roles=roles)
         self._requested = fields.of_law(self.law.columns)

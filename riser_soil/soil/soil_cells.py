@@ -10,11 +10,12 @@ import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
 from riser_soil.core.c_function import CFunction
+from riser_soil.core.communicator import raised_on_all_ranks
 from riser_soil.soil import cell_loops
 from riser_soil.soil.cell_loops import kernels_of
 from riser_soil.soil.families import point_volumes
 from riser_soil.soil.field import components
-from riser_soil.soil.grid import DistributedMesh, on_all_ranks
+from riser_soil.soil.grid import DistributedMesh
 
 STRAINED = 1e-4  # of its size, that a cell's nodes move against each other before it is placed anew
 
@@ -33,7 +34,8 @@ class SoilCells:
         self.nodes = np.ascontiguousarray(grid.nodes.cells)
         self._dofs = components(self.nodes, grid.family.axes)
         self.made_at = grid.nodes.points[self.nodes]
-        self.volumes = on_all_ranks(grid.nodes.comm, lambda: self._volumes_of(self.made_at))
+        with raised_on_all_ranks(grid.nodes.comm):
+            self.volumes = self._volumes_of(self.made_at)
         self.shape = self.volumes.shape
         self._placed = self._placed_at(self.made_at)
         self._spans = np.ptp(self.made_at, axis=1).min(axis=1)

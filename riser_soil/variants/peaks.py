@@ -7,7 +7,7 @@ from typing import Any
 
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.core.snapshot import Record, Records, SoilSnapshot, stacked
-from riser_soil.results.hung_figures import hung_reader, looked_at
+from riser_soil.results.hung_figures import hung_reader, hung_values
 from riser_soil.results.instants import InstantReader
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.schedule import Schedule
@@ -57,6 +57,6 @@ class _PeakObserver(StatelessObserver):
                     self._on_record(line, record.at(0))
 
     def _record(self, t: float, stepper: TimeStepper, soil: SoilSnapshot | None = None) -> Records:
-        records = {line: reader.record_of([reader.look(stepper)]) for line, reader in self._readers.items()}
-        self.peaks.record([t], records, soil, stacked([looked_at(self._hung, stepper.now)]))
+        records = {line: reader.record_of([reader.copy(stepper)]) for line, reader in self._readers.items()}
+        self.peaks.record([t], records, soil, stacked([hung_values(self._hung, stepper.now)]))
         return records

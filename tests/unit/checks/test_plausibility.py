@@ -111,10 +111,10 @@ def judged(
     plausibility.EA = np.full(count, 1.0e9)
     values = {"effective_tension": np.array([tension]), "curvature": np.zeros((1, count))}
     values["bending_moment"] = np.full((1, count), moment)
-    plausibility.look(np.ones(1), Record(assembly.riser.line.arc, values))
+    plausibility.follow(np.ones(1), Record(assembly.riser.line.arc, values))
     misfits = {"smooth_misfit": smooth, "steep_misfit": steep}
     closely = {name: np.array([values or np.zeros(count - 1)]) for name, values in misfits.items()}
-    plausibility.look_closely(np.ones(1), Record(assembly.riser.line.arc, closely))
+    plausibility.follow_bending(np.ones(1), Record(assembly.riser.line.arc, closely))
     again = Plausibility(assembly.riser)
     again.begin_stage(assembly.scene.stages[0])
     again.restore(plausibility.state())
@@ -184,7 +184,7 @@ def test_what_is_doubtful_about_soil_is_known_after_a_restart() -> None:
         each.begin_stage(assembly.scene.stages[1])
     for t, force, stretch, beyond in ((0.1, 1.0e6, 2.0, 2.0), (0.2, 10.0, 1.0, -1.0)):
         values = {"touchdown_arc": np.array(7.5), "touchdown_position": high + np.array([beyond, -0.5 * high[1], 0.0])}
-        begun.look(t, PressedSoil(np.full(nodes, force), stretch), Record(riser.line.arc, values))
+        begun.follow(t, PressedSoil(np.full(nodes, force), stretch), Record(riser.line.arc, values))
     warnings = begun.warnings()
     assert len(warnings) == 3
     line_with(warnings, "stretched to 2 times", "0.1 s")
