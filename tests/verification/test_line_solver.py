@@ -49,7 +49,7 @@ def test_steps_are_those_of_snes(case: str) -> None:
 
 
 def test_a_bar_that_has_turned_many_times_comes_to_rest_without_a_cut_step(monkeypatch: pytest.MonkeyPatch) -> None:
-    """By SNES: `tests/unit/solve/test_round_off.py`."""
+    """By SNES: `tests/unit/solve/test_convergence.py`."""
     assembly, watched = built(turned_bar(20) | {"solver": {"newton": "compiled"}}), list[AcceptedStep]()
     turn, rest = assembly.scene.stages
     monkeypatch.setattr("riser_soil.solve.newton.StepIteration", None)
