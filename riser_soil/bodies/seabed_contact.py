@@ -13,11 +13,12 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.bodies.body import MovingBody, Posture, add_tangent_at, add_to_dofs, posture, way_by_increments
-from riser_soil.contact.along_step import OverStep, keep_history, over_step
+from riser_soil.contact.along_step import written_work
 from riser_soil.contact.seabed_kernels import by_position
-from riser_soil.core.arrays import Array
-from riser_soil.core.bound import call_each
+from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.bound import Span, call_span, spans
 from riser_soil.core.compiled import njit
+from riser_soil.core.entries import Calls
 from riser_soil.core.part import State, Traits, Weights
 from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser.configuration import Maps, SpatialConfiguration
@@ -26,22 +27,37 @@ from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, ad
 from riser_soil.riser.vectors import add, cross, dot, matrix, matscale, matvec, scale, vecmat, vector, write
 from riser_soil.seabed.grounds import Ground
 from riser_soil.seabed.law import NormalLaw
-from riser_soil.seabed.points import SeabedPoints, find_penetrations, seabed_points
+from riser_soil.seabed.points import seabed_points
 
 
 class BodyContactData(NamedTuple):
     """A `BodyContact`: points (n, 3) in body axes and length that each stands for [m].
 
-    As found last: arms (n, 3) of the points from the body's origin [m] and what the seabed does there; the same where
-    the step began; the law over the step.
+    As found last: arms of the points from the body's origin and places [m], gradients of the distance from the ground,
+    each (n, 3), and its hessians (n, 3, 3); penetration, whether the law acts, force per length, slope and energy
+    stored (n,); places and energy where the step began; work (n,) of a law with a history in the step, (0,) of others.
+    Kernels, and which of them find what, as of `SeabedData`.
     """
 
     points: Array
     length: float
     arm: Array
-    here: SeabedPoints
-    began: SeabedPoints
-    over_step: OverStep
+    place: Array
+    gradient: Array
+    hessian: Array
+    penetration: Array
+    acts: BoolArray
+    force: Array
+    slope: Array
+    stored: Array
+    began_at: Array
+    stored_before: Array
+    work: Array
+    kernels: Calls
+    find: Span
+    find_before: Span
+    write_hessians: Span
+    keep: Span
 
 
 @njit
@@ -55,34 +71,32 @@ def _place(points: Array, at: Posture, arm: Array, place: Array) -> None:
 
 @add_forces.of(BodyContactData)
 def _press(part: BodyContactData, at: SpatialConfiguration, out: LineForces) -> None:
-    body, here = posture(at), part.here
-    _place(part.points, body, part.arm, here.at.place)
-    find_penetrations(here)
-    call_each(here.answer)
+    here = posture(at)
+    _place(part.points, here, part.arm, part.place)
+    call_span(part.kernels, part.find)
     for p in range(len(part.points)):
-        if here.law.acts[p]:
-            force = scale(-part.length * here.law.force[p], vector(here.at.gradient[p]))
-            add_to_dofs(out.end[0], force, vecmat(cross(vector(part.arm[p]), force), body.H))
+        if part.acts[p]:
+            force = scale(-part.length * part.force[p], vector(part.gradient[p]))
+            add_to_dofs(out.end[0], force, vecmat(cross(vector(part.arm[p]), force), here.H))
 
 
 @add_tangent.of(BodyContactData)
 def _add_tangent_of_contact(
     part: BodyContactData, at: SpatialConfiguration, maps: Maps, weights: Weights, K: Array
 ) -> None:
-    body, law, ground = posture(at), part.here.law, part.here.at
-    Rn, Theta = matrix(at.Rn[0]), vector(at.Theta[0])
-    call_each(part.here.write_hessians)
+    here, Rn, Theta = posture(at), matrix(at.Rn[0]), vector(at.Theta[0])
+    call_span(part.kernels, part.write_hessians)
     for p in range(len(part.points)):
-        if law.acts[p]:
-            normal, bend = vector(ground.gradient[p]), matrix(ground.hessian[p])
-            by_place = matscale(part.length, by_position(law.force[p], law.slope[p], normal, bend))
-            force = scale(-part.length * law.force[p], normal)
-            add_tangent_at(K[0], 1.0, body, Rn, Theta, vector(part.arm[p]), force, by_place)
+        if part.acts[p]:
+            normal, bend = vector(part.gradient[p]), matrix(part.hessian[p])
+            by_place = matscale(part.length, by_position(part.force[p], part.slope[p], normal, bend))
+            force = scale(-part.length * part.force[p], normal)
+            add_tangent_at(K[0], 1.0, here, Rn, Theta, vector(part.arm[p]), force, by_place)
 
 
 @add_energy.of(BodyContactData)
 def _add_stored(part: BodyContactData, at: SpatialConfiguration, energy: Array) -> None:
-    for stored in part.here.law.stored:
+    for stored in part.stored:
         energy[2] += part.length * stored
 
 
@@ -92,24 +106,20 @@ def _add_lost(part: BodyContactData, first: SpatialConfiguration, last: SpatialC
     `SeabedContact`; what that force takes beyond the work of the law along the step is the time scheme's. Its work is
     that of the increments, as in the equations of motion.
     """
-    here, began = part.here, part.began
-    _place(part.points, posture(first), np.empty(part.arm.shape), began.at.place)
-    find_penetrations(began)
-    call_each(began.answer)
-    call_each(part.over_step.write_work)
+    _place(part.points, posture(first), np.empty(part.arm.shape), part.began_at)
+    call_span(part.kernels, part.find_before)
     for p in range(len(part.points)):
         way = way_by_increments(first, last, vector(part.arm[p]))
-        extracted = -here.law.force[p] * dot(vector(here.at.gradient[p]), way)
-        gained = here.law.stored[p] - began.law.stored[p]
-        by_law = part.over_step.work[p] if part.over_step.write_work.rows.size > 0 else gained
+        extracted = -part.force[p] * dot(vector(part.gradient[p]), way)
+        gained = part.stored[p] - part.stored_before[p]
         work[0] += part.length * (extracted - gained)
-        work[3] += part.length * (extracted - by_law)
+        work[3] += part.length * (extracted - (part.work[p] if part.work.size > 0 else gained))
 
 
 @keep.of(BodyContactData)
 def _keep_history(part: BodyContactData, at: SpatialConfiguration) -> None:
     """The law's history after the step."""
-    keep_history(part.over_step, part.here)
+    call_span(part.kernels, part.keep)
 
 
 class BodyContact(CompiledPart):
@@ -137,10 +147,16 @@ class BodyContact(CompiledPart):
         return self.length / len(self.points)
 
     def make_kernel_data(self) -> BodyContactData:
-        radii = np.full(len(self.points), self.radius)
-        here, began = (seabed_points(radii, self.ground, self.law, self.memory) for _ in range(2))
-        length, arm = float(self.length_of_point), np.zeros(self.points.shape)
-        return BodyContactData(self.points, length, arm, here, began, over_step(self.law, here, began))
+        radius = np.full(len(self.points), self.radius)
+        began, here = (seabed_points(radius, self.ground, self.law, self.memory) for _ in range(2))
+        work, ground, law = np.zeros(self.memory.shape[0] if self.memory.shape[1] > 0 else 0), here.ground, here.law
+        find_before = [*began.find, *written_work(self.law, here, began, work)]
+        kernels, (find, before, hessians, keeping) = spans(here.find, find_before, here.write_hessians, here.keep)
+        near = ground.place, ground.gradient, ground.hessian, ground.penetration
+        answer = law.acts, law.force, law.slope, law.stored
+        step = began.ground.place, began.law.stored, work, kernels, find, before, hessians, keeping
+        arm, length = np.zeros(self.points.shape), float(self.length_of_point)
+        return BodyContactData._make((self.points, length, arm, *near, *answer, *step))
 
     def kernel_data(self) -> BodyContactData:
         data: BodyContactData = self._data
@@ -155,7 +171,7 @@ class BodyContact(CompiledPart):
         if not self.active:
             return 0.0
         self.find(state)
-        return max(0.0, float(self._data.here.law.penetration.max()))
+        return max(0.0, float(self._data.penetration.max()))
 
     def sunk_by(self, force: float) -> float:
         """How deep [m] a force [N] presses all points into ground that has never been touched, ten lengths at most."""

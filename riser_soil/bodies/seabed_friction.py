@@ -55,16 +55,16 @@ class BodyFrictionData(NamedTuple):
 @njit
 def _moved(part: BodyFrictionData, p: int) -> Vec:
     """The movement of a point in the step."""
-    moved: Vec = sub(vector(part.contact.here.at.place[p]), vector(part.position[p]))
+    moved: Vec = sub(vector(part.contact.place[p]), vector(part.position[p]))
     return moved
 
 
 @njit
 def _mapped(part: BodyFrictionData, p: int) -> tuple[Pair, tuple[Pair, Pair], Pair]:
     """Traction per length at a point and its derivatives, as of `coulomb.return_map`."""
-    law, mu = part.contact.here.law, (part.mu[0], part.mu[1])
-    most = adhesion_at(part.adhesion, law.penetration[p]) if mu[0] < np.inf else (np.inf, 0.0)
-    limit, rise = limits(law.force[p], law.slope[p], mu, most)
+    contact, mu = part.contact, (part.mu[0], part.mu[1])
+    most = adhesion_at(part.adhesion, contact.penetration[p]) if mu[0] < np.inf else (np.inf, 0.0)
+    limit, rise = limits(contact.force[p], contact.slope[p], mu, most)
     guess = elastic_guess(read_along(part.along[p]), vector(part.traction[p]), part.stiffness, _moved(part, p))
     mapped: tuple[Pair, tuple[Pair, Pair], Pair] = return_map(guess, limit, rise)
     return mapped
@@ -75,7 +75,7 @@ def _resist(part: BodyFrictionData, at: SpatialConfiguration, out: LineForces) -
     """After the forces of the contact that it belongs to."""
     here, contact = posture(at), part.contact
     for p in range(part.slid.size):
-        if contact.here.law.acts[p]:
+        if contact.acts[p]:
             t, _, _ = _mapped(part, p)
             write(scale(-1.0, vector_of(read_along(part.along[p]), t)), part.resistance[p])
             force = scale(contact.length, vector(part.resistance[p]))
@@ -89,9 +89,9 @@ def _add_tangent_of_friction(
     here, contact, length = posture(at), part.contact, part.contact.length
     Rn, Theta = matrix(at.Rn[0]), vector(at.Theta[0])
     for p in range(part.slid.size):
-        if contact.here.law.acts[p]:
+        if contact.acts[p]:
             _, by_elastic, by_penetration = _mapped(part, p)
-            ways, normal = read_along(part.along[p]), vector(contact.here.at.gradient[p])
+            ways, normal = read_along(part.along[p]), vector(contact.gradient[p])
             by_place = resistance_by_position(ways, part.stiffness, by_elastic, by_penetration, normal)
             force = scale(length, vector(part.resistance[p]))
             add_tangent_at(K[0], 1.0, here, Rn, Theta, vector(contact.arm[p]), force, matscale(length, by_place))
@@ -100,7 +100,7 @@ def _add_tangent_of_friction(
 @add_energy.of(BodyFrictionData)
 def _add_stored(part: BodyFrictionData, at: SpatialConfiguration, energy: Array) -> None:
     for p in range(part.slid.size):
-        if part.contact.here.law.acts[p]:
+        if part.contact.acts[p]:
             t = vector(part.resistance[p])
             energy[2] += 0.5 * part.contact.length / part.stiffness * dot(t, t)
 
@@ -112,7 +112,7 @@ def _add_lost(part: BodyFrictionData, first: SpatialConfiguration, last: Spatial
     for p in range(part.slid.size):
         before = vector(part.traction[p])
         work[0] += length * softness * dot(before, before)
-        if part.contact.here.law.acts[p]:
+        if part.contact.acts[p]:
             t = vector(part.resistance[p])
             way = way_by_increments(first, last, vector(part.contact.arm[p]))
             work[0] += length * (dot(t, way) - softness * dot(t, t))
@@ -121,10 +121,10 @@ def _add_lost(part: BodyFrictionData, first: SpatialConfiguration, last: Spatial
 @keep.of(BodyFrictionData)
 def _keep_traction(part: BodyFrictionData, at: SpatialConfiguration) -> None:
     """The traction, the way slid beyond the elastic mobilisation, and what the next step starts from."""
-    law = part.contact.here.law
+    contact = part.contact
     for p in range(part.slid.size):
-        t, touches = vector(part.resistance[p]), law.acts[p]
-        if law.force[p] > 0.0:
+        t, touches = vector(part.resistance[p]), contact.acts[p]
+        if contact.force[p] > 0.0:
             change = add(vector(part.traction[p]), t)
             part.slid[p] += slip_at(read_along(part.along[p]), change, part.stiffness, _moved(part, p))
         write(scale(-1.0 if touches else 0.0, t), part.traction[p])
@@ -133,10 +133,10 @@ def _keep_traction(part: BodyFrictionData, at: SpatialConfiguration) -> None:
 
 @write_start.of(BodyFrictionData)
 def _write_start(part: BodyFrictionData, at: SpatialConfiguration) -> None:
-    ground = part.contact.here.at
+    contact = part.contact
     for p in range(part.slid.size):
-        write(vector(ground.place[p]), part.position[p])
-        write_along(directions_at(ALONG_X, vector(ground.gradient[p])), part.along[p])
+        write(vector(contact.place[p]), part.position[p])
+        write_along(directions_at(ALONG_X, vector(contact.gradient[p])), part.along[p])
 
 
 class BodyFriction(SeabedFriction):

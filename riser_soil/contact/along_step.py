@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.bound import Bound, Packed, call_each, calls
+from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
-from riser_soil.core.entries import Calls
 from riser_soil.core.part import State
-from riser_soil.seabed.compiled_law import answer, continue_others
+from riser_soil.seabed.compiled_law import answer
 from riser_soil.seabed.law import NormalLaw
 from riser_soil.seabed.points import SeabedPoints
 
@@ -44,33 +43,14 @@ def write_works(law: Any, reach: float, before: Array, after: Array, history: Ar
         work[i] = work_at(law, reach, before[i], after[i], history[i], workspace)
 
 
-class OverStep(NamedTuple):
-    """A law with a history over a step: its work per length (n,) [N] by one way from the penetration at the beginning
-    to that at the end, and kernels that write it, and the history of points where the law does not act; none of a law
-    without.
+def written_work(law: NormalLaw, here: SeabedPoints, began: SeabedPoints, work: Array) -> list[Bound]:
+    """What writes the law's work (n,) by one way between the penetrations where the step began and at its end; nothing
+    of a law without a history, see `work_at`.
     """
-
-    work: Array
-    write_work: Calls
-    continue_others: Calls
-
-
-def over_step(law: NormalLaw, here: SeabedPoints, began: SeabedPoints) -> OverStep:
-    """Of a law at the end of a step and at its beginning."""
-    work = np.zeros(here.radius.size)
     if here.law.history.shape[1] == 0:
-        return OverStep(work, calls(), calls())
-    data, way = Packed(law.kernel_data), (began.law.penetration, here.law.penetration)
-    written = map(Packed, (float(law.reach), *way, here.law.history, work))
-    kernels = Bound(write_works, data, *written), Bound(continue_others, data, Packed(here.law))
-    return OverStep(work, *map(calls, kernels))
-
-
-@njit
-def keep_history(step: OverStep, here: SeabedPoints) -> None:
-    """Keep the law's history at the end of the step."""
-    call_each(step.continue_others)
-    here.law.history[:] = here.law.after
+        return []
+    ways = began.law.penetration, here.law.penetration, here.law.history, work
+    return [Bound(write_works, *map(Packed, (law.kernel_data, float(law.reach), *ways)))]
 
 
 @njit

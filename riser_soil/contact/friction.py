@@ -15,7 +15,7 @@ import numpy as np
 
 from riser_soil.contact.coulomb import Adhesion, Pair, adhesion_at, limits, return_map
 from riser_soil.contact.seabed_contact import SeabedContact
-from riser_soil.contact.seabed_kernels import SeabedData, normal_at
+from riser_soil.contact.seabed_kernels import TouchingStations, normal_at
 from riser_soil.core.arrays import Array
 from riser_soil.core.bound import Bound, Packed, bound
 from riser_soil.core.by_type import by_type
@@ -123,7 +123,7 @@ class FrictionData(NamedTuple):
     resistance (ne, ng, d): minus the traction found last, of elements that touch.
     """
 
-    contact: SeabedData
+    contact: TouchingStations
     mu: Array
     adhesion: Adhesion
     stiffness: Array
@@ -210,12 +210,12 @@ class CoulombFriction(SeabedFriction):
     def make_kernel_data(self) -> FrictionData:
         d, shape = self.line.dimension, self.contact.share.shape
         position, traction, resistance = (np.zeros((*shape, d)) for _ in range(3))
-        given = self.contact.kernel_data(), self._mu, self._adhesion, self._stiffness
+        given = self.contact.kernel_data().touching, self._mu, self._adhesion, self._stiffness
         return FrictionData(*given, position, np.zeros((*shape, d, d - 1)), traction, self._slid, resistance)
 
     def kernel_data(self) -> FrictionData:
-        found: FrictionData = self._data
-        return found
+        data: FrictionData = self._data
+        return data
 
     def slip(self) -> Array:
         """Accumulated slip of the riser over the ground at its nodes (nn,) [m], >= 0."""
@@ -264,9 +264,9 @@ def _moved(part: FrictionData, e: int, g: int) -> Vec:
 @njit
 def _limits(part: FrictionData, e: int, g: int) -> tuple[Pair, Pair]:
     """L of `coulomb` at a station, and its derivative by the penetration."""
-    law, mu, p = part.contact.here.law, (part.mu[0], part.mu[1]), e * part.slid.shape[1] + g
-    most = adhesion_at(part.adhesion, law.penetration[p]) if mu[0] < math.inf else (math.inf, 0.0)
-    limit: tuple[Pair, Pair] = limits(law.force[p], law.slope[p], mu, most)
+    contact, mu, p = part.contact, (part.mu[0], part.mu[1]), e * part.slid.shape[1] + g
+    most = adhesion_at(part.adhesion, contact.penetration[p]) if mu[0] < math.inf else (math.inf, 0.0)
+    limit: tuple[Pair, Pair] = limits(contact.force[p], contact.slope[p], mu, most)
     return limit
 
 
@@ -334,7 +334,7 @@ def _keep_traction(part: FrictionData, at: Configuration) -> None:
     for e in range(part.stiffness.size):
         for g in range(part.slid.shape[1]):
             t, k = padded(part.traction[e, g]), part.stiffness[e]
-            if contact.here.law.force[e * part.slid.shape[1] + g] > 0.0:
+            if contact.force[e * part.slid.shape[1] + g] > 0.0:
                 taken = add(t, padded(part.resistance[e, g]))
                 part.slid[e, g] += slip_at(read_along(part.along[e, g]), taken, k, _moved(part, e, g))
             for i in range(len(at.D)):

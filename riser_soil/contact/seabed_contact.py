@@ -11,8 +11,8 @@ import numpy as np
 from riser_soil.contact.contact import ContactResults, RiserContact, size_of, write_results
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_kernels import (
-    OverNodes,
     SeabedData,
+    Shares,
     land,
     seabed_data,
     write_at_nodes,
@@ -26,7 +26,6 @@ from riser_soil.core.saved_state import Saved, Stateful
 from riser_soil.riser import stations
 from riser_soil.riser.line import Line
 from riser_soil.riser.line_part import CompiledPart
-from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.vectors import Vec
 from riser_soil.seabed.grounds import Ground, Plane
 from riser_soil.seabed.law import NormalLaw
@@ -54,6 +53,7 @@ class SeabedContact(CompiledPart, RiserContact):
 
     name = "seabed"
     after_forces = True
+    shares: Shares | None = None  # of the law that acts, None for all of it
 
     def __init__(
         self,
@@ -70,8 +70,7 @@ class SeabedContact(CompiledPart, RiserContact):
         self.share = line.length[:, None] * rule.weights
         arc = line.arc[:-1, None] + line.length[:, None] * rule.points
         self._along = PointsAlong(arc.ravel(), self.share.ravel())
-        linear = np.stack([1.0 - rule.points, rule.points])
-        self._nodes = OverNodes(larger_beside(radius), line.tributary_length, linear)
+        self._linear = np.stack([1.0 - rule.points, rule.points])  # shares of stations in the nodes of their element
         self.memory = law.initial_history((line.length.size, rule.points.size))
         roles = Predictor, Stateful
         self.traits = Traits("E", symmetric=True, path_dependent=True, gradual=law.gradual, roles=roles)
@@ -79,8 +78,8 @@ class SeabedContact(CompiledPart, RiserContact):
         self._written_trial = -1  # count of the trial whose results were written last
 
     def make_kernel_data(self) -> SeabedData:
-        stations = self.at, self.share, self._radius, self.memory, self._nodes
-        return seabed_data(self.line, *stations, self.ground, self.law, self._cover)
+        stations = self.at, self.share, self._radius, self.memory, self._linear
+        return seabed_data(self.line, *stations, self.ground, self.law, self._cover, self.shares)
 
     def kernel_data(self) -> SeabedData:
         data: SeabedData = self._data
@@ -127,7 +126,7 @@ class SeabedContact(CompiledPart, RiserContact):
 
     def write_at_nodes(self, values: Array, out: Array) -> Bound:
         """What writes means at the nodes (nn,) of values at the stations (ne, ng), by their share of arc length."""
-        return Bound(write_at_nodes, *map(Packed, (self._nodes, self.share, values, out)))
+        return Bound(write_at_nodes, *map(Packed, (self._data.nodes, self.share, values, out)))
 
     def penetration(self, state: State) -> Array:
         """Penetration (nn,) [m] of the nodes' undersides, 0 above the ground."""
@@ -192,10 +191,12 @@ class Cushion(SeabedContact):
     def __init__(self, line: Line, radius: Array, level: float, weight: float, depth: float, soil: Covering) -> None:
         law, ground = Penalty(weight / depth, 0.25 * depth), Plane.level(level + depth)
         super().__init__(line, radius, ground, law, stations.THREE_POINTS, beside(soil))
+        self.shares = self._left = Shares(np.ones(1), np.ones(1))
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         super().renew_kernel_data(start, end)
-        self._data.acting[:] = [1.0 if self.stays else (1.0 - min(t, 1.0)) ** 2 for t in (start, end)]
+        for share, t in zip(self._left, (start, end), strict=True):
+            share[0] = 1.0 if self.stays else (1.0 - min(t, 1.0)) ** 2
 
 
 class BesideData(NamedTuple):

@@ -9,11 +9,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.along_step import OverStep, keep_history, lift, over_step
+from riser_soil.contact.along_step import lift, written_work
 from riser_soil.contact.contact import ContactResults, write_results
 from riser_soil.core.arrays import Array, BoolArray
-from riser_soil.core.bound import call_each
+from riser_soil.core.bound import Span, call_span, spans
 from riser_soil.core.compiled import fixed, njit
+from riser_soil.core.entries import Calls
 from riser_soil.core.part import Weights
 from riser_soil.core.rows import add_pulled_back, add_weighed, as_tuple
 from riser_soil.riser import stations
@@ -21,6 +22,7 @@ from riser_soil.riser.configuration import Configuration, Maps
 from riser_soil.riser.hermite import Size
 from riser_soil.riser.line import Line
 from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, add_tangent, add_work, keep
+from riser_soil.riser.sections import larger_beside
 from riser_soil.riser.vectors import (
     Mat,
     Vec,
@@ -43,7 +45,7 @@ from riser_soil.riser.vectors import (
 )
 from riser_soil.seabed.grounds import Ground
 from riser_soil.seabed.law import NormalLaw
-from riser_soil.seabed.points import SeabedPoints, find_penetrations, seabed_points
+from riser_soil.seabed.points import seabed_points
 
 
 class LineFrame(NamedTuple):
@@ -53,42 +55,70 @@ class LineFrame(NamedTuple):
     axes: Mat
 
 
-class OverNodes(NamedTuple):
-    """What stations (ne, ng) share with the nodes: radius and length of the line that belongs to a node (nn,) [m];
-    linear (2, ng): shares of a station at the first and the second node of its element.
-    """
-
-    radius: Array
-    length: Array
-    linear: Array
-
-
-class SeabedData(NamedTuple):
-    """A `SeabedContact`: its stations and their share of arc length (ne, ng), radius (ne,), the nodes; the gap at which
-    the law's force starts [m]; shares (2,) of the law that act where a step starts and where it ends.
-
-    As found last: which elements touch (ne,); positions of the stations (ne ng, d) and what the seabed does there, with
-    forces by their share of the law; the same where the step began, by the whole law; the nodes beside the seabed;
-    the law over the step. Workspace for an element, and for the force and its derivative at a station.
+class TouchingStations(NamedTuple):
+    """Stations of a line's elements and their share of arc length (ne, ng); in the line's frame. As found last: which
+    elements touch (ne,); of the stations (n,), n = ne ng, position (n, d), penetration, gradient (n, 3) of the distance
+    from the ground in global axes, whether the law acts, force and slope. Workspace for an element, and for a vector
+    and a matrix of a station.
     """
 
     at: stations.Stations
     share: Array
-    radius: Array
-    over_nodes: OverNodes
     frame: LineFrame
-    start: float
-    acting: Array
     touches: BoolArray
     position: Array
-    began_at: Array
-    here: SeabedPoints
-    began: SeabedPoints
-    nodes: SeabedPoints
-    over_step: OverStep
+    penetration: Array
+    gradient: Array
+    acts: BoolArray
+    force: Array
+    slope: Array
     element: Array
     f: Array
     by: Array
+
+
+class AtNodes(NamedTuple):
+    """Nodes (nn,): line that belongs to each [m]; shares (2, ng) that stations of an element have in its first and its
+    second node; places (nn, 3) in global axes and penetrations, as found last.
+    """
+
+    length: Array
+    linear: Array
+    place: Array
+    penetration: Array
+
+
+class SeabedData(NamedTuple):
+    """A `SeabedContact`: the stations that touch; the nodes; the gap at which the law's force starts [m].
+
+    Places of the stations (n, 3) in global axes, hessians of the distance (n, 3, 3) and energy stored (n,); places and
+    energy where the step began; work (n,) of a law with a history in the step, (0,) of others. Kernels, see
+    `SeabedPoints`, and which of them find what the stations do at the end of the step and where it began, and so on.
+    """
+
+    touching: TouchingStations
+    nodes: AtNodes
+    start: float
+    place: Array
+    hessian: Array
+    stored: Array
+    began_at: Array
+    stored_before: Array
+    work: Array
+    kernels: Calls
+    find: Span
+    find_before: Span
+    find_at_nodes: Span
+    write_hessians: Span
+    set_all_aside: Span
+    keep: Span
+
+
+class Shares(NamedTuple):
+    """Shares (1,) of the law that act where a step starts and where it ends."""
+
+    start: Array
+    end: Array
 
 
 def seabed_data(
@@ -97,23 +127,34 @@ def seabed_data(
     share: Array,
     radius: Array,
     memory: Array,
-    nodes: OverNodes,
+    linear: Array,
     ground: Ground,
     law: NormalLaw,
     cover: Any,
+    shares: Shares | None,
 ) -> SeabedData:
-    """With the workspace that they need; memory (ne, ng, nh): the law's history; cover: kernel data of what lies on the
-    ground in places, None for nothing.
+    """With the workspace that they need; radius (ne,) [m]; memory (ne, ng, nh): the law's history; cover: kernel data
+    of what lies on the ground in places, None for nothing; shares: of the law that act, None for all of it.
     """
-    (ne, ng, nh), d, radii = memory.shape, line.dimension, np.repeat(radius, share.shape[1])
-    here, began = (seabed_points(radii, ground, law, memory.reshape(ne * ng, nh), cover) for _ in range(2))
-    beside = seabed_points(nodes.radius, ground, law, law.initial_history(nodes.radius.shape), cover)
-    places = np.zeros(ne, dtype=np.bool_), np.zeros((ne * ng, d)), np.zeros((ne * ng, d))
-    element = stations.element_workspace(2 * line.ndof, fixed(d))
-    return SeabedData(
-        *(at, share, radius, nodes, frame_of(line), float(law.start), np.ones(2), *places),
-        *(here, began, beside, over_step(law, here, began), element, np.zeros(d), np.zeros((d, d))),
+    (ne, ng, nh), d, n = memory.shape, line.dimension, share.size
+    weights = (None, None) if shares is None else shares
+    began, here = (
+        seabed_points(np.repeat(radius, ng), ground, law, memory.reshape(n, nh), cover, weight) for weight in weights
     )
+    at_nodes = seabed_points(larger_beside(radius), ground, law, law.initial_history((ne + 1,)), cover)
+    work = np.zeros(n if nh > 0 else 0)
+    find_before = [*began.find, *written_work(law, here, began, work)]
+    kernels, (find, before, nodal, hessians, aside, keeping) = spans(
+        here.find, find_before, at_nodes.find, here.write_hessians, here.set_all_aside, here.keep
+    )
+    answer = here.law.acts, here.law.force, here.law.slope
+    workspace = stations.element_workspace(2 * line.ndof, fixed(d)), np.zeros(d), np.zeros((d, d))
+    known = here.ground.penetration, here.ground.gradient, *answer, *workspace
+    touching = TouchingStations(at, share, frame_of(line), np.zeros(ne, dtype=np.bool_), np.zeros((n, d)), *known)
+    nodes = AtNodes(line.tributary_length, linear, at_nodes.ground.place, at_nodes.ground.penetration)
+    step = here.ground.place, here.ground.hessian, here.law.stored, began.ground.place, began.law.stored, work
+    called = kernels, find, before, nodal, hessians, aside, keeping
+    return SeabedData._make((touching, nodes, float(law.start), *step, *called))
 
 
 def frame_of(line: Line) -> LineFrame:
@@ -130,19 +171,18 @@ def global_place(frame: LineFrame, x: Vec) -> Vec:
 
 
 @njit
-def normal_at(part: SeabedData, p: int) -> Vec:
+def normal_at(touching: TouchingStations, p: int) -> Vec:
     """Gradient of the distance of a station from the ground, in the line's axes as its position is."""
-    normal: Vec = matvec(part.frame.axes, vector(part.here.at.gradient[p]))
+    normal: Vec = matvec(touching.frame.axes, vector(touching.gradient[p]))
     return normal
 
 
 @njit
 def bend_at(part: SeabedData, p: int) -> Mat:
-    """Hessian of the distance [1/m] there, in the line's axes."""
-    if part.here.write_hessians.rows.size == 0:
-        return ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    axes = part.frame.axes
-    return matmul(matmul(axes, matrix(part.here.at.hessian[p])), transpose(axes))
+    """Hessian of the distance of a station [1/m] in the line's axes."""
+    axes = part.touching.frame.axes
+    bend: Mat = matmul(matmul(axes, matrix(part.hessian[p])), transpose(axes))
+    return bend
 
 
 @njit
@@ -152,14 +192,13 @@ def by_position(force: float, slope: float, normal: Vec, bend: Mat) -> Mat:
 
 
 @njit
-def _place(part: SeabedData, q: Array, D: Size, position: Array, points: SeabedPoints) -> None:
-    """Write the positions of the stations, and the same in global axes."""
-    ng = part.share.shape[1]
-    for p in range(len(position)):
-        x = stations.value_at(part.at.N, p, q, p // ng, D)
-        for i in range(len(D)):
-            position[p, i] = x[i]
-        write(global_place(part.frame, padded(position[p])), points.at.place[p])
+def _position(touching: TouchingStations, p: int, q: Array, D: Size) -> Vec:
+    """Position of a station in the line's axes."""
+    x = stations.value_at(touching.at.N, p, q, p // touching.share.shape[1], D)
+    for i in range(len(D)):
+        touching.f[i] = x[i]
+    position: Vec = padded(touching.f)
+    return position
 
 
 @njit
@@ -167,63 +206,65 @@ def land(part: SeabedData, x: Array, moved: Array) -> None:
     """Raise the increments (nn, ndof) of nodes at x (nn, d) that would sink, see `along_step`; not of those that come
     down on something else.
     """
-    d, start, penetration = x.shape[1], part.start, part.nodes.law.penetration
+    nn, d, penetration = x.shape[0], x.shape[1], part.nodes.penetration
+    present, then = np.empty(nn), np.empty((nn, d))
     _find_at_nodes(part, x)
-    present = -penetration - start
-    _find_at_nodes(part, x + moved[:, :d])
-    for n in range(x.shape[0]):
-        moved[n, d - 1] += lift(present[n], -penetration[n] - start, start)
+    for n in range(nn):
+        present[n] = -penetration[n] - part.start
+        for i in range(d):
+            then[n, i] = x[n, i] + moved[n, i]
+    _find_at_nodes(part, then)
+    for n in range(nn):
+        moved[n, d - 1] += lift(present[n], -penetration[n] - part.start, part.start)
 
 
 @njit
 def _find_at_nodes(part: SeabedData, x: Array) -> None:
     """Find the penetrations of nodes at x (nn, d)."""
     for n in range(x.shape[0]):
-        write(global_place(part.frame, padded(x[n])), part.nodes.at.place[n])
-    find_penetrations(part.nodes)
+        write(global_place(part.touching.frame, padded(x[n])), part.nodes.place[n])
+    call_span(part.kernels, part.find_at_nodes)
 
 
 @add_forces.of(SeabedData)
 def _contact_forces(part: SeabedData, at: Configuration, out: LineForces) -> None:
-    """By the share of the law that acts."""
-    here, law, ng = part.here, part.here.law, part.share.shape[1]
-    _place(part, at.q, at.D, part.position, here)
-    find_penetrations(here)
-    call_each(here.answer)
-    part.touches[:] = False
-    for p in range(len(part.position)):
-        if law.acts[p]:
-            part.touches[p // ng] = True
-            law.force[p] *= part.acting[1]
-            law.slope[p] *= part.acting[1]
-            law.stored[p] *= part.acting[1]
-            write(scale(-law.force[p], normal_at(part, p)), part.f)
-            stations.add_integrand_at(part.at.weighted, p, as_tuple(part.f, at.D), out.end_q, p // ng, at.D)
+    touching, ng = part.touching, part.touching.share.shape[1]
+    for p in range(touching.force.size):
+        x = _position(touching, p, at.q, at.D)
+        write(x, touching.position[p])
+        write(global_place(touching.frame, x), part.place[p])
+    call_span(part.kernels, part.find)
+    touching.touches[:] = False
+    for p in range(touching.force.size):
+        if touching.acts[p]:
+            touching.touches[p // ng] = True
+            write(scale(-touching.force[p], normal_at(touching, p)), touching.f)
+            stations.add_integrand_at(touching.at.weighted, p, as_tuple(touching.f, at.D), out.end_q, p // ng, at.D)
 
 
 @add_tangent.of(SeabedData)
 def _contact_tangent(part: SeabedData, at: Configuration, maps: Maps, weights: Weights, K: Array) -> None:
-    law, workspace, ng = part.here.law, part.element, part.share.shape[1]
-    call_each(part.here.write_hessians)
-    for e in range(part.radius.size):
-        if not part.touches[e]:
+    touching, ng = part.touching, part.touching.share.shape[1]
+    call_span(part.kernels, part.write_hessians)
+    for e in range(touching.touches.size):
+        if not touching.touches[e]:
             continue
-        workspace[:] = 0.0
+        touching.element[:] = 0.0
         for g in range(ng):
             p = e * ng + g
-            if law.acts[p]:
-                stiffness = by_position(law.force[p], law.slope[p], normal_at(part, p), bend_at(part, p))
-                write_matrix(stiffness, part.by)
-                pressed = part.at.N[e, g], part.by, maps.place_rows[e]
-                add_weighed(workspace, part.at.weighted[e, g], (pressed,), at.D, at.R)
-        add_pulled_back(K[e], at.P[e], workspace, at.D, at.R)
+            if touching.acts[p]:
+                normal, bend = normal_at(touching, p), bend_at(part, p)
+                write_matrix(by_position(touching.force[p], touching.slope[p], normal, bend), touching.by)
+                pressed = touching.at.N[e, g], touching.by, maps.place_rows[e]
+                add_weighed(touching.element, touching.at.weighted[e, g], (pressed,), at.D, at.R)
+        add_pulled_back(K[e], at.P[e], touching.element, at.D, at.R)
 
 
 @add_energy.of(SeabedData)
 def _contact_energy(part: SeabedData, at: Configuration, energy: Array) -> None:
-    ng = part.share.shape[1]
-    for p in range(len(part.position)):
-        energy[2] += part.share[p // ng, p % ng] * part.here.law.stored[p]
+    ng = part.touching.share.shape[1]
+    for p in range(part.stored.size):
+        energy[2] += part.touching.share[p // ng, p % ng] * part.stored[p]
 
 
 @add_work.of(SeabedData)
@@ -234,52 +275,51 @@ def _contact_work(part: SeabedData, first: Configuration, last: Configuration, w
     work of the law along the step is the time scheme's; on ground without a history it is all. The last configuration
     is that of the forces found last.
     """
-    here, began, ng = part.here.law, part.began.law, part.share.shape[1]
+    touching, ng = part.touching, part.touching.share.shape[1]
     extracted, gained, by_law = 0.0, 0.0, 0.0
-    _place(part, first.q, last.D, part.began_at, part.began)
-    find_penetrations(part.began)
-    call_each(part.began.answer)
-    call_each(part.over_step.write_work)
-    for p in range(len(part.position)):
-        share = part.share[p // ng, p % ng]
-        gained += share * (here.stored[p] - part.acting[0] * began.stored[p])
-        by_law += share * part.over_step.work[p]
-        if here.acts[p]:
-            way = sub(padded(part.position[p]), padded(part.began_at[p]))
-            extracted -= share * here.force[p] * dot(normal_at(part, p), way)
+    for p in range(touching.force.size):
+        write(global_place(touching.frame, _position(touching, p, first.q, last.D)), part.began_at[p])
+    call_span(part.kernels, part.find_before)
+    for p in range(touching.force.size):
+        share = touching.share[p // ng, p % ng]
+        way = sub(vector(part.place[p]), vector(part.began_at[p]))
+        extracted -= share * touching.force[p] * dot(vector(touching.gradient[p]), way)
+        gained += share * (part.stored[p] - part.stored_before[p])
+        if part.work.size > 0:
+            by_law += share * part.work[p]
     work[0] += extracted - gained
-    work[3] += extracted - (by_law if part.over_step.write_work.rows.size > 0 else gained)
+    work[3] += extracted - (by_law if part.work.size > 0 else gained)
 
 
 @keep.of(SeabedData)
 def _keep_history(part: SeabedData, at: Configuration) -> None:
     """The law's history after the step."""
-    keep_history(part.over_step, part.here)
+    call_span(part.kernels, part.keep)
 
 
 @write_results.of(SeabedData)
 def _contact_results(part: SeabedData, at: Configuration, out: ContactResults) -> None:
-    law, over, nodes, total = part.here.law, part.over_nodes, part.nodes, (0.0, 0.0, 0.0)
-    ng = part.share.shape[1]
+    touching, nodes, total = part.touching, part.nodes, (0.0, 0.0, 0.0)
+    ng = touching.share.shape[1]
     out.force_per_length[:], out.deepest[0] = 0.0, 0.0
-    call_each(part.here.set_all_aside)
-    for p in range(len(part.position)):
-        e, g, force = p // ng, p % ng, law.force[p]
-        out.clearance[p] = -law.penetration[p] - part.start
+    call_span(part.kernels, part.set_all_aside)
+    for p in range(touching.force.size):
+        e, g, force = p // ng, p % ng, touching.force[p]
+        out.clearance[p] = -touching.penetration[p] - part.start
         out.force[p] = force
-        out.deepest[0] = max(out.deepest[0], law.penetration[p])
+        out.deepest[0] = max(out.deepest[0], touching.penetration[p])
         for side in range(2):
-            out.force_per_length[e + side] += over.linear[side, g] * (part.share[e, g] * force)
-        total = add(total, scale(part.share[e, g] * force, normal_at(part, p)))
-    write(vecmat(total, part.frame.axes), out.on_riser)
+            out.force_per_length[e + side] += nodes.linear[side, g] * (touching.share[e, g] * force)
+        total = add(total, scale(touching.share[e, g] * force, normal_at(touching, p)))
+    write(vecmat(total, touching.frame.axes), out.on_riser)
     _find_at_nodes(part, at.x)
-    for n in range(over.length.size):
-        out.force_per_length[n] /= over.length[n]
-        out.penetration[n] = out.depth[n] = max(0.0, nodes.law.penetration[n])
+    for n in range(nodes.length.size):
+        out.force_per_length[n] /= nodes.length[n]
+        out.penetration[n] = out.depth[n] = max(0.0, nodes.penetration[n])
 
 
 @njit
-def write_at_nodes(nodes: OverNodes, share: Array, values: Array, out: Array) -> None:
+def write_at_nodes(nodes: AtNodes, share: Array, values: Array, out: Array) -> None:
     """Write means at the nodes (nn,) of values at the stations (ne, ng), which count with their share (ne, ng) of arc
     length.
     """

@@ -11,6 +11,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable, Sequence
 from functools import cached_property, partial
+from itertools import accumulate, chain, pairwise
 from typing import Any
 
 import numpy as np
@@ -71,6 +72,17 @@ def call_each(given: Calls) -> None:
         given.functions[n](given.rows[n], given.rows[n])
 
 
+Span = tuple[int, int]
+"""The first of some kernels among others, and the one behind the last."""
+
+
+@njit
+def call_span(given: Calls, span: Span) -> None:
+    """Call some of the bound kernels one after the other."""
+    for n in range(span[0], span[1]):
+        given.functions[n](given.rows[n], given.rows[n])
+
+
 class _Addresses:
     """Addresses (n,) that keep what they point to, as the base of the arrays that are made of them."""
 
@@ -87,6 +99,14 @@ def calls(*bound: Bound) -> Calls:
     for n, each in enumerate(bound):
         each.entry.put_address(functions, n)
     return Calls(functions, rows)
+
+
+def spans(*lists: Sequence[Bound]) -> tuple[Calls, list[Span]]:
+    """Bound kernels of several lists, and where each list is among them: each `Calls` is one more in what kernels
+    unpack.
+    """
+    ends = [0, *accumulate(map(len, lists))]
+    return calls(*chain(*lists)), list(pairwise(ends))
 
 
 def in_turn(*bound: Bound) -> Bound:

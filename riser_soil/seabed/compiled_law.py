@@ -64,11 +64,15 @@ def answer_acting(law: Any, points: LawPoints) -> None:
 
 
 @njit
-def continue_others(law: Any, points: LawPoints) -> None:
-    """Write the history at the end of the step of the points where the law does not act."""
+def keep_history(law: Any, points: LawPoints) -> None:
+    """Write the history at the end of the step, of points where the law does not act, too, in the place of that at its
+    beginning.
+    """
     for p in range(points.penetration.size):
         if not points.acts[p]:
             answer(law, points.penetration[p], points.history[p], points.after[p])
+        for k in range(points.history.shape[1]):
+            points.history[p, k] = points.after[p, k]
 
 
 class CompiledLaw:
@@ -89,5 +93,5 @@ class CompiledLaw:
         law, packed = Packed(self.kernel_data), Packed(points)
         Bound(answer_acting, law, packed)()
         if history.shape[-1] > 0:
-            Bound(continue_others, law, packed)()
+            Bound(keep_history, law, packed)()
         return points

@@ -53,38 +53,41 @@ class Ground(ABC):
 
     def distance(self, x: Array) -> Distance:
         """Distance of points x (n, 3) in global axes."""
-        points = ground_points(len(x))
+        points = ground_points(np.zeros(len(x)))
         points.place[...] = x
         data, packed = Packed(self.kernel_data), Packed(points)
-        Bound(write_distances, data, packed)()
+        Bound(write_penetrations, data, packed)()
         if self.flat:
-            return Distance(points.distance, points.gradient, None)
+            return Distance(-points.penetration, points.gradient, None)
         Bound(write_hessians, data, packed, Packed(np.ones(len(x), dtype=np.bool_)))()
-        return Distance(points.distance, points.gradient, points.hessian)
+        return Distance(-points.penetration, points.gradient, points.hessian)
 
 
 class GroundPoints(NamedTuple):
-    """Places (n, 3) in global axes [m]; of each the distance (n,) from a ground [m], its gradient (n, 3), and its
-    hessian (n, 3, 3) [1/m], zero on flat ground.
+    """Places (n, 3) in global axes [m], with a sphere of a radius (n,) [m] about each; its penetration (n,) into a
+    ground [m]; gradient (n, 3) and hessian (n, 3, 3) [1/m] of the distance from it, this one zero on flat ground.
     """
 
     place: Array
-    distance: Array
+    radius: Array
+    penetration: Array
     gradient: Array
     hessian: Array
 
 
-def ground_points(n: int) -> GroundPoints:
-    """Workspace for n points."""
-    return GroundPoints(np.zeros((n, 3)), np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3, 3)))
+def ground_points(radius: Array) -> GroundPoints:
+    """Workspace for points of a radius (n,) [m]."""
+    n = len(radius)
+    return GroundPoints(np.zeros((n, 3)), radius, np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3, 3)))
 
 
 @njit
-def write_distances(ground: Any, points: GroundPoints) -> None:
-    """Write the distances of points from a ground, by its kernel data, and their gradients."""
+def write_penetrations(ground: Any, points: GroundPoints) -> None:
+    """Write the penetrations of points into a ground, by its kernel data, and the gradients of the distance."""
     place, gradient = points.place, points.gradient
-    for p in range(points.distance.size):
-        points.distance[p], by_place, _ = distance_at(ground, (place[p, 0], place[p, 1], place[p, 2]))
+    for p in range(points.radius.size):
+        distance, by_place, _ = distance_at(ground, (place[p, 0], place[p, 1], place[p, 2]))
+        points.penetration[p] = points.radius[p] - distance
         gradient[p, 0], gradient[p, 1], gradient[p, 2] = by_place
 
 
@@ -92,7 +95,7 @@ def write_distances(ground: Any, points: GroundPoints) -> None:
 def write_hessians(ground: Any, points: GroundPoints, wanted: BoolArray) -> None:
     """Write the hessians of the distances of those points that are wanted (n,)."""
     place, hessian = points.place, points.hessian
-    for p in range(points.distance.size):
+    for p in range(points.radius.size):
         if wanted[p]:
             _, _, rows = distance_at(ground, (place[p, 0], place[p, 1], place[p, 2]))
             for i in range(3):

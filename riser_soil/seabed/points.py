@@ -1,4 +1,4 @@
-"""Points near a seabed: how far off the ground they are, and what the seabed's law answers there.
+"""Points near a seabed: how deep they are in the ground, and what the seabed's law answers there.
 
 Loops over the points are compiled for each ground and each law, once for all contacts, which call them by address: a
 contact's own kernels are the same on all seabeds.
@@ -12,63 +12,50 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array, IntArray
-from riser_soil.core.bound import Bound, Packed, call_each, calls
+from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.by_type import by_type
 from riser_soil.core.compiled import njit
-from riser_soil.core.entries import Calls
-from riser_soil.seabed.compiled_law import LawPoints, answer_acting, law_points
-from riser_soil.seabed.grounds import Ground, GroundPoints, Vec, ground_points, write_distances, write_hessians
+from riser_soil.seabed.compiled_law import LawPoints, answer_acting, keep_history, law_points
+from riser_soil.seabed.grounds import Ground, GroundPoints, Vec, ground_points, write_hessians, write_penetrations
 from riser_soil.seabed.law import NormalLaw
 
 UNKNOWN = -1  # number of what lies on the ground below a place
 
 
 class SeabedPoints(NamedTuple):
-    """Points (n,) near a seabed. radius (n,) [m]: a point touches as a sphere about its place does. reach [m]: gap from
-    which on the law has no force. cover (n,): number of what was found on the ground below, see `covered_by`.
-
-    Kernels: of the distances from the ground and of their hessians, of none on flat ground; of what lies on the ground,
-    of places within the law's reach and of all; of the law.
+    """Points near a seabed, and bound kernels over them. `find`: penetrations, -inf where something else lies on the
+    ground, and the law's answer. `write_hessians`: of the distances of points where the law acts; none on flat ground.
+    `set_all_aside`: penetrations of -inf beyond the law's reach, too. `keep`: the history after the step in the place
+    of that before it; none of a law without.
     """
 
-    at: GroundPoints
+    ground: GroundPoints
     law: LawPoints
-    radius: Array
-    reach: float
-    cover: IntArray
-    write_distances: Calls
-    write_hessians: Calls
-    set_aside: Calls
-    set_all_aside: Calls
-    answer: Calls
+    find: list[Bound]
+    write_hessians: list[Bound]
+    set_all_aside: list[Bound]
+    keep: list[Bound]
 
 
-def seabed_points(radius: Array, ground: Ground, law: NormalLaw, history: Array, cover: Any = None) -> SeabedPoints:
-    """Points of a radius (n,) with a history (n, nh) of the law. cover: kernel data of what lies on the ground in
-    places, None for nothing.
+def seabed_points(
+    radius: Array, ground: Ground, law: NormalLaw, history: Array, cover: Any = None, share: Array | None = None
+) -> SeabedPoints:
+    """Points that touch as spheres of a radius (n,) [m] do, with a history (n, nh) of the law. cover: kernel data of
+    what lies on the ground in places, None for nothing; share (1,): of the law that acts, None for all of it.
     """
-    n, reach = len(radius), max(float(law.reach), float(law.start))
-    at, points, below = ground_points(n), law_points(np.zeros(n), history), np.full(n, UNKNOWN)
-    of_ground, packed, of_law = Packed(ground.kernel_data), Packed(at), Packed(points)
-    hessians = [] if ground.flat else [Bound(write_hessians, of_ground, packed, Packed(points.acts))]
-    covered = [
-        [] if cover is None else [Bound(set_aside, *map(Packed, (cover, within, at.place, below, points.penetration)))]
-        for within in (reach, math.inf)
-    ]
-    answers = [Bound(answer_acting, Packed(law.kernel_data), of_law)]
-    kernels = [Bound(write_distances, of_ground, packed)], hessians, *covered, answers
-    return SeabedPoints(at, points, radius, reach, below, *(calls(*each) for each in kernels))
-
-
-@njit
-def find_penetrations(points: SeabedPoints) -> None:
-    """Find by how much the points at their places sink in; by -inf where something else lies on the ground, of those
-    within the law's reach.
-    """
-    call_each(points.write_distances)
-    for p in range(points.radius.size):
-        points.law.penetration[p] = points.radius[p] - points.at.distance[p]
-    call_each(points.set_aside)
+    at = ground_points(radius)
+    points, reach = law_points(at.penetration, history), max(float(law.reach), float(law.start))
+    of_ground, of_law, placed, packed = map(Packed, (ground.kernel_data, law.kernel_data, at, points))
+    below = Packed(np.full(len(radius), UNKNOWN))
+    near, everywhere = (
+        [] if cover is None else [Bound(set_aside, Packed(cover), placed, below, Packed(each))]
+        for each in (reach, math.inf)
+    )
+    weighed = [] if share is None else [Bound(weigh_answer, packed, Packed(share))]
+    find = [Bound(write_penetrations, of_ground, placed), *near, Bound(answer_acting, of_law, packed), *weighed]
+    hessians = [] if ground.flat else [Bound(write_hessians, of_ground, placed, Packed(points.acts))]
+    keep = [Bound(keep_history, of_law, packed)] if history.shape[-1] > 0 else []
+    return SeabedPoints(at, points, find, hessians, everywhere, keep)
 
 
 @by_type
@@ -79,12 +66,22 @@ def covered_by(cover: Any, x: Vec, known: int) -> Any:
 
 
 @njit
-def set_aside(cover: Any, within: float, place: Array, below: IntArray, penetration: Array) -> None:
-    """Find what lies on the ground below places (n, 3) within a gap [m], and write a penetration of -inf where there is
-    something.
+def set_aside(cover: Any, points: GroundPoints, below: IntArray, reach: float) -> None:
+    """Find what lies on the ground below points within a reach [m], and write a penetration of -inf where there is
+    something. below (n,): its number.
     """
+    place, penetration = points.place, points.penetration
     for p in range(penetration.size):
-        if penetration[p] > -within:
+        if penetration[p] > -reach:
             below[p] = covered_by(cover, (place[p, 0], place[p, 1], place[p, 2]), below[p])
             if below[p] >= 0:
                 penetration[p] = -np.inf
+
+
+@njit
+def weigh_answer(points: LawPoints, share: Array) -> None:
+    """Scale the answer by the share (1,) of the law that acts."""
+    for p in range(points.force.size):
+        points.force[p] *= share[0]
+        points.slope[p] *= share[0]
+        points.stored[p] *= share[0]

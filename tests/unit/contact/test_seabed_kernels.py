@@ -167,15 +167,15 @@ def test_covered_stations_feel_nothing_and_keep_their_history(dimension: int) ->
     free = SeabedContact(at.line, radius, ground, law)
     part = SeabedContact(at.line, radius, ground, law, covering=beyond(middle))
     state = at.state(1)
-    here, alone = (contact.kernel_data().here for contact in (part, free))
+    here, alone = (contact.kernel_data() for contact in (part, free))
     for contact in (part, free):
         contact.find(state)
-    covered = here.at.place[:, 0] > middle
-    near = alone.law.penetration > -here.reach
+    covered = here.place[:, 0] > middle
+    near = alone.touching.penetration > -law.reach
     assert (covered & near).any()
     assert not covered.all()
-    assert np.all(here.law.penetration[covered & near] == -np.inf)
-    np.testing.assert_array_equal(here.law.penetration[~covered], alone.law.penetration[~covered])
+    assert np.all(here.touching.penetration[covered & near] == -np.inf)
+    np.testing.assert_array_equal(here.touching.penetration[~covered], alone.touching.penetration[~covered])
     clear, force = part.contact_along_line(state)
     assert np.isinf(clear[covered]).all()
     assert not force[covered].any()
