@@ -208,22 +208,30 @@ class BodyDrag(CompiledPart):
     traits = Traits("F", symmetric=False, follows=True)
 
     def __init__(
-        self, body: MovingBody, given: BodyProperties, sea: Sea, rho: float, buoyancy: float, level: float, still: bool
+        self,
+        body: MovingBody,
+        properties: BodyProperties,
+        sea: Sea,
+        rho: float,
+        buoyancy: float,
+        level: float,
+        still: bool,
     ) -> None:
         super().__init__(body)
-        self._given, self._sea, self._rho, self._turns = given, sea, rho, body.turns
+        self._properties, self._sea, self._rho, self._turns = properties, sea, rho, body.turns
         self._buoyancy, self._level, self._still = buoyancy, level, still
 
     def make_kernel_data(self) -> DragData:
-        given, rho, motion, t, x = self._given, self._rho, motion_workspace(1, 3), np.zeros(1), np.zeros((1, 3))
+        properties, rho = self._properties, self._rho
+        motion, t, x = motion_workspace(1, 3), np.zeros(1), np.zeros((1, 3))
         return DragData(
-            drag=0.5 * rho * given.drag,
-            spin_drag=0.5 * rho * given.spin_drag,
-            pushed=rho * given.volume + given.added_mass,
-            centre=given.buoyancy_centre,
+            drag=0.5 * rho * properties.drag,
+            spin_drag=0.5 * rho * properties.spin_drag,
+            pushed=rho * properties.volume + properties.added_mass,
+            centre=properties.buoyancy_centre,
             buoyancy=float(self._buoyancy),
             level=float(self._level),
-            radius=given.radius,
+            radius=properties.radius,
             turns=self._turns,
             find=calls(*motion_of(self._sea, motion, t, x)),
             t=t,

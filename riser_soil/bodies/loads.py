@@ -103,9 +103,11 @@ class BodyWeight(CompiledPart):
     name = "body weight"
     traits = Traits("F", symmetric=True)
 
-    def __init__(self, body: MovingBody, given: BodyProperties, weight: float, buoyancy: float, level: float) -> None:
+    def __init__(
+        self, body: MovingBody, properties: BodyProperties, weight: float, buoyancy: float, level: float
+    ) -> None:
         super().__init__(body)
-        self._given, self._weight, self._buoyancy, self._level = given, weight, buoyancy, level
+        self._properties, self._weight, self._buoyancy, self._level = properties, weight, buoyancy, level
 
     @property
     def load(self) -> float:
@@ -118,8 +120,8 @@ class BodyWeight(CompiledPart):
         return self._weight - self._buoyancy
 
     def make_kernel_data(self) -> WeightData:
-        given, forces = self._given, (float(self._weight), float(self._buoyancy))
-        return WeightData(*forces, float(self._level), given.radius, given.gravity_centre, given.buoyancy_centre)
+        body, forces = self._properties, (float(self._weight), float(self._buoyancy))
+        return WeightData(*forces, float(self._level), body.radius, body.gravity_centre, body.buoyancy_centre)
 
 
 class ReleaseData(NamedTuple):

@@ -78,10 +78,10 @@ def _path_of(columns: CsvColumns, source: str) -> MaterialPath:
     stress = np.array([name in columns.values for name in STRESSES])
     names = np.where(stress, STRESSES, STRAINS)
     values = np.column_stack([columns.get(str(name)) for name in names])
-    given = tuple(str(n) for n in names if n in columns.values)
+    names_in_file = tuple(str(n) for n in names if n in columns.values)
     times = columns.values.get("time")
     seconds = np.full(len(values), np.inf) if times is None else np.diff(times, prepend=0.0)
-    return MaterialPath(values, stress, given, source, seconds)
+    return MaterialPath(values, stress, names_in_file, source, seconds)
 
 
 def shear_cycles(amplitudes: Sequence[float] = AMPLITUDES, rows: int = ROWS) -> MaterialPath:

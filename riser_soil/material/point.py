@@ -1,4 +1,4 @@
-"""A material point of the soil: its law at a depth, and its answer along a path."""
+"""A material point of the soil: its law at a depth, and its response along a path."""
 
 from __future__ import annotations
 
@@ -77,29 +77,29 @@ def drive(point: MaterialPoint, path: MaterialPath) -> MaterialCurve:
     rows = [(strain, before, lost)]
     for row, values in enumerate(wanted):
         increment = np.where(path.stress, 0.0, values - strain)
-        increment, answer = _answer(point, increment, values, path, before.history, row)
-        lost += _dissipated(point, increment, before, answer)
-        strain, before = strain + increment, answer
-        rows.append((strain, answer, lost))
+        increment, response = _response(point, increment, values, path, before.history, row)
+        lost += _dissipated(point, increment, before, response)
+        strain, before = strain + increment, response
+        rows.append((strain, response, lost))
     return _curve(law, rows)
 
 
-def _answer(
+def _response(
     point: MaterialPoint, increment: Array, wanted: Array, path: MaterialPath, history: Array, row: int
 ) -> tuple[Array, StressUpdate]:
-    """The increment (6,) that brings the given components of stress to their change, by Newton's method, and its
-    answer.
+    """The increment (6,) that brings the given components of stress to their change, by Newton's method, and the
+    law's response.
     """
     free: BoolArray = path.stress
-    answer = point.law.update(increment[None], history, path.seconds[row])
+    response = point.law.update(increment[None], history, path.seconds[row])
     for _ in range(MOST_ITERATIONS):
-        missing = (wanted - answer.stress[0] + point.initial[0])[free]
-        if not np.abs(missing).max(initial=0.0) > CONVERGED * np.abs(answer.stress).max():
-            return increment, answer
-        moduli = answer.tangent[0][np.ix_(free, free)]
+        missing = (wanted - response.stress[0] + point.initial[0])[free]
+        if not np.abs(missing).max(initial=0.0) > CONVERGED * np.abs(response.stress).max():
+            return increment, response
+        moduli = response.tangent[0][np.ix_(free, free)]
         increment = increment.copy()
         increment[free] += np.linalg.lstsq(moduli, missing, rcond=1e-12)[0]
-        answer = point.law.update(increment[None], history, path.seconds[row])
+        response = point.law.update(increment[None], history, path.seconds[row])
     names = ", ".join(np.array(STRESSES)[free])
     raise SolveError(
         f"{path.source}, row {row + 1}: no strain brings {names} to what is asked: the soil has no such strength, or "
@@ -118,7 +118,7 @@ def _curve(law: Formula, rows: list[tuple[Array, StressUpdate, float]]) -> Mater
     plastic = law.columns.index(PLASTIC_STRAIN) if PLASTIC_STRAIN in law.columns else None
     return MaterialCurve(
         np.array([strain for strain, _, _ in rows]) / STRAIN_FACTOR,
-        np.array([answer.stress[0] for _, answer, _ in rows]) / STRESS_FACTOR,
-        np.array([0.0 if plastic is None else answer.history[0, plastic] for _, answer, _ in rows]),
+        np.array([response.stress[0] for _, response, _ in rows]) / STRESS_FACTOR,
+        np.array([0.0 if plastic is None else response.history[0, plastic] for _, response, _ in rows]),
         np.array([lost for _, _, lost in rows]),
     )

@@ -31,8 +31,8 @@ def stage_of_kind(run: Run, name: str | None, *kinds: str) -> int:
     chosen = name if name is not None else next(reversed(numbers), "")
     if chosen not in numbers:
         words = " or ".join(kinds)
-        known = f"its {words} stages: {', '.join(numbers)}" if numbers else f"it has no {words} stage"
-        raise ResultsError(f'{run.place}: "{chosen}" is no {words} stage of the run; {known}')
+        choice = f"its {words} stages: {', '.join(numbers)}" if numbers else f"it has no {words} stage"
+        raise ResultsError(f'{run.place}: "{chosen}" is no {words} stage of the run; {choice}')
     return numbers[chosen]
 
 

@@ -122,10 +122,10 @@ def appending(file: GrowingFile) -> Iterator[h5py.File]:
 
 def append_rows(dataset: h5py.Dataset, rows: object) -> None:
     """Rows behind those of a dataset, by HDF5's own calls, which take half the time of h5py's."""
-    new, (known, *row) = np.ascontiguousarray(rows), dataset.id.shape
-    dataset.id.set_extent((known + len(new), *row))
+    new, (count, *row) = np.ascontiguousarray(rows), dataset.id.shape
+    dataset.id.set_extent((count + len(new), *row))
     place = dataset.id.get_space()
-    place.select_hyperslab((known, *(0 for _ in row)), new.shape)
+    place.select_hyperslab((count, *(0 for _ in row)), new.shape)
     dataset.id.write(h5s.create_simple(new.shape), place, new)
 
 
@@ -236,9 +236,9 @@ class _MemoryFile:
 
 def _cut(offset: int, count: int) -> Iterator[tuple[int, slice, slice]]:
     """Page by page: its number, the part of it, and the part of the `count` bytes that begin at `offset`."""
-    done = 0
-    while done < count:
-        number, start = divmod(offset + done, _PAGE)
-        size = min(_PAGE - start, count - done)
-        yield number, slice(start, start + size), slice(done, done + size)
-        done += size
+    first = 0
+    while first < count:
+        number, start = divmod(offset + first, _PAGE)
+        size = min(_PAGE - start, count - first)
+        yield number, slice(start, start + size), slice(first, first + size)
+        first += size

@@ -55,15 +55,15 @@ class HungReader:
         self._joints = None if hung is None else hung.joints
         self._contacts = {} if hung is None else hung.contacts
         self._frictions = {} if hung is None else hung.frictions
-        self._pairs = [_Pair(assembly, given) for given in assembly.scene.output.clearance]
+        self._pairs = [_Pair(assembly, spec) for spec in assembly.scene.output.clearance]
 
     @property
     def variables(self) -> dict[str, Variable]:
         """Variables of bodies, joints and clearances by path in results.nc."""
         variables: dict[str, Variable] = {}
         for name, body in self._bodies.items():
-            known = _OF_BODY if body.turns else {key: _OF_BODY[key] for key in ("position", "velocity")}
-            variables |= {f"bodies/{name}/{key}": _vector(*texts) for key, texts in known.items()}
+            quantities = _OF_BODY if body.turns else {key: _OF_BODY[key] for key in ("position", "velocity")}
+            variables |= {f"bodies/{name}/{key}": _vector(*texts) for key, texts in quantities.items()}
         for name in self._contacts:
             force, depth = _ON_SEABED.items()
             variables |= {f"bodies/{name}/{force[0]}": _vector(*force[1])}
@@ -98,10 +98,10 @@ class HungReader:
     def warnings(self, figures: Mapping[str, Any]) -> list[str]:
         """Warnings of rigid joints that gape and of bodies below ground. figures: of a stage, see `HungExtremes`."""
         joints = () if self._joints is None else self._joints.joints
-        given = self._assembly.scene.joints
+        joints_of_scene = self._assembly.scene.joints
         warnings = []
         for joint in joints:
-            stiffness = given[joint.name].stiffness
+            stiffness = joints_of_scene[joint.name].stiffness
             gap = figures["joints"][joint.name]["gap"]
             largest = float(np.linalg.norm(np.fmax(np.abs(gap["min"]), np.abs(gap["max"]))))
             allowed = GAPES * self._assembly.scales.diameter
@@ -128,10 +128,10 @@ class HungReader:
 class _Pair:
     """A pair of lines, and the elements of each that count."""
 
-    def __init__(self, assembly: Assembly, given: Clearance) -> None:
-        self.path = f"clearance/{given.key}"
-        self._lines = [assembly.lines[name].line for name in given.between]
-        self._counts = [np.array(apart_from_joints(assembly.scene, name, given.beyond)) for name in given.between]
+    def __init__(self, assembly: Assembly, spec: Clearance) -> None:
+        self.path = f"clearance/{spec.key}"
+        self._lines = [assembly.lines[name].line for name in spec.between]
+        self._counts = [np.array(apart_from_joints(assembly.scene, name, spec.beyond)) for name in spec.between]
 
     def nearest(self) -> tuple[Array, Array, Array]:
         """Distance and both arc lengths, each without axes [m]."""

@@ -44,9 +44,9 @@ class Largest:
 
     def update(self, times: Array, values: Array, *beside: Array) -> None:
         """Take in values (nt, n) at times (nt,), and what belongs to each, (nt, n)."""
-        known = np.where(np.isnan(values), -np.inf, values)
-        at, column = known.argmax(axis=0), np.arange(values.shape[1])
-        rows = np.stack([known[at, column], times[at], *(each[at, column] for each in beside)])
+        comparable = np.where(np.isnan(values), -np.inf, values)
+        at, column = comparable.argmax(axis=0), np.arange(values.shape[1])
+        rows = np.stack([comparable[at, column], times[at], *(each[at, column] for each in beside)])
         size = np.where(np.isfinite(self.values), np.abs(self.values), 0.0)
         larger = rows[0] > self.values + self._tolerance * size
         self._rows[:, larger] = rows[:, larger]

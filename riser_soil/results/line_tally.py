@@ -45,14 +45,14 @@ class LineTally:
 
     def as_dict(self, stepped: bool) -> dict[str, Any]:
         """The line's share of the summary. stepped: whether the stage has had a step."""
-        known: dict[str, Any] = {
+        figures: dict[str, Any] = {
             "final": final_state(self.extremes.latest) if stepped else None,
             "extremes": self.extremes.nested() if stepped else None,
             "warnings": self.warnings,
             "indicators": self.indicators.as_dict(self._kind == "dynamic"),
         }
         parts = {"soil": self.soil.nested(), "code_check": self.code.as_list()}
-        return known | {name: part for name, part in parts.items() if part}
+        return figures | {name: part for name, part in parts.items() if part}
 
     @property
     def warnings(self) -> list[str]:

@@ -118,12 +118,12 @@ class SeriesFile:
         more: Mapping[str, Variable] | None = None,
     ) -> None:
         self._of_step = HEALTH | dict(ledger or {})
-        known = {name: v for name, v in SERIES.items() if sections or "section" not in v.dims}
-        shared = {name: known[name] for name in ("time", "stage")}
+        variables = {name: v for name, v in SERIES.items() if sections or "section" not in v.dims}
+        shared = {name: variables[name] for name in ("time", "stage")}
         along = {
             f"{group(line)}{name}": _in_group(v, group(line))
             for line in arcs
-            for name, v in known.items()
+            for name, v in variables.items()
             if name not in shared and name not in (unrecorded or {}).get(line, ())
         }
         of_instant = shared | along | dict(more or {})

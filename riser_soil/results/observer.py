@@ -81,7 +81,7 @@ class Observer:
         the first step, for the summary.
         """
         mesh = assembly.soil.whole.output_mesh() if assembly.soil is not None else None
-        known = facts_of(assembly, warnings)
+        facts = facts_of(assembly, warnings)
         with Progress(enabled=assembly.comm.rank == 0) as progress:
             recorder = None
             with raised_on_all_ranks(assembly.comm), uninterrupted():
@@ -92,7 +92,7 @@ class Observer:
                     arcs = {name: line.line.arc for name, line in assembly.lines.items()}
                     reader = hung_reader(assembly)
                     hung = {} if reader is None else reader.variables
-                    recorder = Recorder.open(folder, known, arcs, mesh, text, fields, force, keeping, hung)
+                    recorder = Recorder.open(folder, facts, arcs, mesh, text, fields, force, keeping, hung)
             with recorder or nullcontext():
                 observer = cls(assembly, clock, recorder, progress, peaks)
                 try:
@@ -219,14 +219,14 @@ class Observer:
         self._relaxed += relaxed.iterations
         if self._recorder is None:
             return
-        tally, took = self._recorder.summary.stages[-1], f"{relaxed.iterations} Newton iterations"
+        tally, iterations = self._recorder.summary.stages[-1], f"{relaxed.iterations} Newton iterations"
         if relaxed.sunk:
             tally.settlings += 1
-            print(f"the clay as it was did not bear the riser, which settled by {relaxed.sunk:.3g} m in {took}")
+            print(f"the clay as it was did not bear the riser, which settled by {relaxed.sunk:.3g} m in {iterations}")
             return
         tally.relaxations += 1
         tally.branch_switches += relaxed.branch_switches
-        print(f"dynamic relaxation was needed; it took {took}, counted with the next step")
+        print(f"dynamic relaxation was needed; it took {iterations}, counted with the next step")
         if relaxed.branch_switches:
             print(f"it left {relaxed.branch_switches} unstable equilibrium(s) in the mode of buckling")
 

@@ -64,8 +64,8 @@ class Run:
             raise ResultsError(f"{self.folder}: is not the folder of a run: no {run_folder.SERIES}")
         self._group = f"{line}/" if line else ""
         if line and line not in self.lines:
-            known = ", ".join(self.lines) or "none by name: it is a run of one riser"
-            raise ResultsError(f"{self.folder}: has no line {line}; it has {known}")
+            names = ", ".join(self.lines) or "none by name: it is a run of one riser"
+            raise ResultsError(f"{self.folder}: has no line {line}; it has {names}")
 
     @classmethod
     def is_there(cls, place: Path) -> bool:
@@ -107,8 +107,8 @@ class Run:
             path = self._path_of(file, name)
             if path is None:
                 self.require_one_line(name)
-                known = ", ".join(sorted(file[self._group or "/"]))
-                raise ResultsError(f"{self.place}: results.nc has no {name}; it has {known}")
+                names = ", ".join(sorted(file[self._group or "/"]))
+                raise ResultsError(f"{self.place}: results.nc has no {name}; it has {names}")
             stored = file[path]
             values: Array = (stored.asstr() if h5py.check_string_dtype(stored.dtype) else stored)[...]
         return values
@@ -287,5 +287,5 @@ def load(path: Path, group: str = "") -> xr.Dataset:
 
 def _names(stage: xr.DataArray) -> np.ndarray:
     """Names of the stages by their numbers, blanks as underscores."""
-    known = np.array(str(stage.attrs.get("flag_meanings", "")).split(), dtype=str)
-    return known[stage.values] if stage.size else np.empty(0, dtype=str)
+    meanings = np.array(str(stage.attrs.get("flag_meanings", "")).split(), dtype=str)
+    return meanings[stage.values] if stage.size else np.empty(0, dtype=str)

@@ -23,8 +23,8 @@ _CHECKED: tuple[Need, ...] = (  # utilisations of a `Record`
 
 def known_fields(assembly: Assembly) -> dict[str, tuple[str, ...]]:
     """Fields of each line that the scene requests, as far as they can be computed."""
-    asked = assembly.scene.output.fields
-    return {name: outputs.known(asked, _known_of_line(line)) for name, line in assembly.lines.items()}
+    requested = assembly.scene.output.fields
+    return {name: outputs.known(requested, _known_of_line(line)) for name, line in assembly.lines.items()}
 
 
 def _known_of_line(riser: LineAssembly) -> list[Need]:

@@ -89,8 +89,8 @@ class BoundParts:
     def work(self, before: Configuration, rows: Array) -> list[Bound]:
         """Add what parts turn over in a step from another configuration to rows (m, 4), one each that has a kernel."""
         data, then = [each for each in self.data if has_work(each)], Packed(before)
-        given = zip(data, rows, strict=True)
-        return [bound(add_work, each, then, self.packed_at, Packed(row)) for each, row in given]
+        pairs = zip(data, rows, strict=True)
+        return [bound(add_work, each, then, self.packed_at, Packed(row)) for each, row in pairs]
 
     def keep(self) -> list[Bound]:
         """Keep the history of the parts that have one."""

@@ -123,13 +123,13 @@ def workspace_for(line: MovingNodes) -> Configuration:
     nn, ne, d, r = line.nodes, line.length.size, line.dimension, line.frames.dofs
     shapes = {"x": (nn, d), "chord": (ne, d), "tangent": (ne, 2, d), "P": (ne, 2, d, r), "v": (nn, d + r)}
     shapes |= {"q": (ne, 4, d), "rate": (ne, 4, d), "acceleration": (ne, 4, d), "a": (nn, d + r)}
-    given: dict[str, Any] = {"D": fixed(d), "R": fixed(r)}
+    sizes: dict[str, Any] = {"D": fixed(d), "R": fixed(r)}
     if isinstance(line.frames, PlanarFrames):
         shapes |= {"Theta": (nn, 1), "angle": (nn,), "end_angle": (ne, 2)}
-        return PlanarConfiguration(**given, **_empty(shapes))
+        return PlanarConfiguration(**sizes, **_empty(shapes))
     shapes |= {"Rn": (nn, 3, 3), "Theta": (nn, 3), "frames": (nn, 3, 3), "H": (nn, 3, 3)}
     shapes |= {"frame1": (ne, 3, 3), "frame2": (ne, 3, 3)}
-    return SpatialConfiguration(T0=line.frames.T0, **given, **_empty(shapes))
+    return SpatialConfiguration(T0=line.frames.T0, **sizes, **_empty(shapes))
 
 
 def maps_for(line: MovingNodes) -> Maps:

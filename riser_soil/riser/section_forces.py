@@ -152,12 +152,12 @@ class SectionForces:
     def __init__(self, line: Line, elements: Elements, rows: Array) -> None:
         """rows (..., n): from `section_input`."""
         self._line, self._elements = line, elements
-        self._given = SectionInput.within(rows, line)
+        self._input = SectionInput.within(rows, line)
 
     @cached_property
     def position(self) -> Array:
         """Places of the nodes (nn, 3) [m]."""
-        return self._in_global(np.moveaxis(self._given.x, -1, 0)) + self._line.origin
+        return self._in_global(np.moveaxis(self._input.x, -1, 0)) + self._line.origin
 
     @cached_property
     def tangent(self) -> Array:
@@ -231,12 +231,12 @@ class SectionForces:
     @cached_property
     def end_force(self) -> Array:
         """Force of the supports on the line's two ends (2, 3) [N]."""
-        return self.force[..., [0, -1], :] * [[-1.0], [1.0]] + self._given.on_ends[..., 0, :]
+        return self.force[..., [0, -1], :] * [[-1.0], [1.0]] + self._input.on_ends[..., 0, :]
 
     @cached_property
     def end_moment(self) -> Array:
         """Moment of the supports, springs among them, on the line's two ends (2, 3) [N m]."""
-        return self.moment[..., [0, -1], :] * [[-1.0], [1.0]] + self._given.on_ends[..., 1, :]
+        return self.moment[..., [0, -1], :] * [[-1.0], [1.0]] + self._input.on_ends[..., 1, :]
 
     @cached_property
     def least_tension(self) -> tuple[Array, Array]:
@@ -260,10 +260,10 @@ class SectionForces:
         """Forces and moments at the elements' ends."""
         elastic, d = self._sections, self._line.dimension
         if self._damped:
-            elastic = elastic - _of_sections(self._given.viscous)
+            elastic = elastic - _of_sections(self._input.viscous)
         maps = None if self._maps is None else at_ends(self._maps, axis=2)
         moment = _moment_of(elastic[d:], maps)
-        return ElementEnds(elastic[:d], moment, self._tangent, self._frames, self._given.turn)
+        return ElementEnds(elastic[:d], moment, self._tangent, self._frames, self._input.turn)
 
     # Along the line's axes, with components in front, see `components`:
 
@@ -272,24 +272,24 @@ class SectionForces:
         """Inverse transposes (3, 3, ..., nn) of the maps from rotation dofs, by columns; None in a plane."""
         if self._line.dimension == 2:
             return None
-        H = np.moveaxis(self._given.turn, (-1, -2), (0, 1))
+        H = np.moveaxis(self._input.turn, (-1, -2), (0, 1))
         columns = [cross(H[1], H[2]), cross(H[2], H[0]), cross(H[0], H[1])]
         return np.stack(columns) / dot(H[0], columns[0])
 
     @cached_property
     def _sections(self) -> Array:
         """What acts in the sections at the elements' ends (d + r, 2, ..., ne): forces, and what turns the dofs."""
-        return _of_sections(self._given.residual)
+        return _of_sections(self._input.residual)
 
     @cached_property
     def _tangent(self) -> Array:
         """Unit tangents (d, 2, ..., ne) at the elements' ends."""
-        return ends_in_front(self._given.tangent)
+        return ends_in_front(self._input.tangent)
 
     @cached_property
     def _frames(self) -> Array | None:
         """Section axes (3, 3, 2, ..., ne) at the elements' ends, one behind the other; None in a plane."""
-        both = self._given.first_frame, self._given.second_frame
+        both = self._input.first_frame, self._input.second_frame
         in_front = [np.moveaxis(frames, (-1, -2), (0, 1)) for frames in both]
         return None if self._line.dimension == 2 else np.stack(in_front, axis=2)
 
@@ -324,12 +324,12 @@ class SectionForces:
         """Bending moments (r, ..., nn) less their viscous share."""
         if not self._damped:
             return self._bending
-        viscous = self._moment_at_nodes(_of_sections(self._given.viscous))
+        viscous = self._moment_at_nodes(_of_sections(self._input.viscous))
         return np.asarray(self._bending - across(viscous, self._axis))
 
     @property
     def _damped(self) -> bool:
-        return self._given.viscous.shape[-3] > 0
+        return self._input.viscous.shape[-3] > 0
 
     @cached_property
     def _moment_slope(self) -> Array:

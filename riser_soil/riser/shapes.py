@@ -71,13 +71,13 @@ def through(arc: Array, points: npt.ArrayLike) -> Curve:
     """A smooth curve through points (np, 3), nodes at equal fractions of its arc length and of the
     polyline's.
     """
-    given = np.asarray(points, dtype=float)
-    steps = np.linalg.norm(np.diff(given, axis=0), axis=1)
-    if len(given) < 2 or not np.all(steps > 0.0):
+    polyline = np.asarray(points, dtype=float)
+    steps = np.linalg.norm(np.diff(polyline, axis=0), axis=1)
+    if len(polyline) < 2 or not np.all(steps > 0.0):
         raise SceneError("riser: points: at least two are needed, and no two in a row may coincide")
     along = np.concatenate([[0.0], np.cumsum(steps)])
     at = arc / arc[-1] * along[-1]
-    position = np.stack([np.interp(at, along, given[:, i]) for i in range(3)], axis=1)
+    position = np.stack([np.interp(at, along, polyline[:, i]) for i in range(3)], axis=1)
     return from_nodes(position, nodal_tangents(position))
 
 
@@ -91,10 +91,10 @@ def circle(
     k = np.asarray(axis, dtype=float) / np.linalg.norm(axis)
     spoke = first - middle
     spoke = spoke - k * (k @ spoke)
-    given, length = abs(angle) * float(np.linalg.norm(spoke)), float(arc[-1])
-    if abs(given - length) > 1e-6 * length:
+    of_arc, length = abs(angle) * float(np.linalg.norm(spoke)), float(arc[-1])
+    if abs(of_arc - length) > 1e-6 * length:
         raise SceneError(
-            f"riser.unstressed.arc: its length is {given:.9g} m, but the segments sum to {length:.9g} m"
+            f"riser.unstressed.arc: its length is {of_arc:.9g} m, but the segments sum to {length:.9g} m"
         )
     phi = (arc / arc[-1] * angle)[:, None]
     side = np.cross(k, spoke)

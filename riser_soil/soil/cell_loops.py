@@ -107,14 +107,14 @@ def write_at_points(kernel: CFunction, at: Array, mean: Array, dofs: IntArray, u
 
 @njit
 def add_forces(
-    kernel: CFunction, at: Array, mean: Array, shares: Array, given: Array, dofs: IntArray, out: Array
+    kernel: CFunction, at: Array, mean: Array, shares: Array, coefficients: Array, dofs: IntArray, out: Array
 ) -> None:
-    """Add the cells' nodal forces, times their shares (nc,), to out; given (nc, m): coefficients of the form."""
+    """Add the cells' nodal forces, times their shares (nc,), to out; coefficients (nc, m): of the form."""
     n = dofs.shape[1]
     b = np.empty(n + 1)
     for c in range(at.shape[0]):
         b[:] = 0.0
-        kernel(place(b, 0), place(given, c), 0, place(at, c), 0, 0, 0)
+        kernel(place(b, 0), place(coefficients, c), 0, place(at, c), 0, 0, 0)
         for i in range(mean.shape[1]):
             b[i] += b[n] * mean[c, i]
         for i in range(n):
@@ -123,19 +123,19 @@ def add_forces(
 
 @njit
 def renew_matrices(
-    kernel: CFunction, at: Array, mean: Array, shares: Array, given: Array, known: Array, out: Array
+    kernel: CFunction, at: Array, mean: Array, shares: Array, coefficients: Array, cached: Array, out: Array
 ) -> None:
-    """Write the cells' matrices (nc, n, n), times their shares (nc,), where they are not yet those of the coefficients
-    given (nc, m) of the form; known: the ones that they are of, which become those.
+    """Write the cells' matrices (nc, n, n), times their shares (nc,), where these are not yet those of the form's
+    coefficients (nc, m); cached: the coefficients of the matrices as they are, which are updated.
     """
     n, fields = out.shape[1], out.shape[1] + (1 if mean.shape[1] > 0 else 0)
     A = np.empty((fields, fields))
     for c in range(at.shape[0]):
-        if _same(given[c], known[c]):
+        if _same(coefficients[c], cached[c]):
             continue
-        known[c] = given[c]
+        cached[c] = coefficients[c]
         A[:] = 0.0
-        kernel(place(A, 0), place(given, c), 0, place(at, c), 0, 0, 0)
+        kernel(place(A, 0), place(coefficients, c), 0, place(at, c), 0, 0, 0)
         K, h = out[c], mean[c]
         for i in range(n):
             if fields > n:
@@ -148,15 +148,15 @@ def renew_matrices(
 
 
 @njit
-def write_integrals(kernel: CFunction, at: Array, facets: IntArray, given: Array, out: Array) -> None:
+def write_integrals(kernel: CFunction, at: Array, facets: IntArray, coefficients: Array, out: Array) -> None:
     """Write vectors (m, n) or matrices (m, n, n) of cells with nodes at (m, nn, 3), or of facets (m,) by their numbers
-    in these; given (m, k): coefficients of the form.
+    in these; coefficients (m, k): of the form.
     """
     number = np.zeros(1, np.int32)
     for f in range(at.shape[0]):
         number[0] = facets[f]
         out[f] = 0.0
-        kernel(place(out, f), place(given, f), 0, place(at, f), place(number, 0), 0, 0)
+        kernel(place(out, f), place(coefficients, f), 0, place(at, f), place(number, 0), 0, 0)
     number[0] = 0
 
 

@@ -136,12 +136,12 @@ class Compliance:
 
     def _solved(self, loads: Array) -> Array:
         """Displacements (n, k) by loads (n, k), of the free dofs."""
-        given = PETSc.Mat().createDense(loads.shape, array=loads, comm=PETSc.COMM_SELF)
+        right = PETSc.Mat().createDense(loads.shape, array=loads, comm=PETSc.COMM_SELF)
         solutions = PETSc.Mat().createDense(loads.shape, comm=PETSc.COMM_SELF)
         solutions.setUp()
-        self._solver.getFactorMatrix().matSolve(given, solutions)
+        self._solver.getFactorMatrix().matSolve(right, solutions)
         out: Array = solutions.getDenseArray().copy()
-        given.destroy()
+        right.destroy()
         solutions.destroy()
         return out
 

@@ -47,9 +47,9 @@ class Reached:
         return np.asarray(0.5 * (inverse + inverse.T))
 
 
-class SurfaceAnswer(NamedTuple):
-    """What the soil does at a state: forces (na,) on the reached dofs that hold the top there [N], displacement (np, 3)
-    of the whole top since the geostatic start [m].
+class SurfaceResponse(NamedTuple):
+    """Response of the soil at a state: forces (na,) [N] on the reached dofs that hold the top there, and displacement
+    (np, 3) [m] of the whole top since the geostatic start.
     """
 
     forces: Array
@@ -74,7 +74,7 @@ class CondensedTop:
         self.size, self.offset = top.size, 0
         self.owned: BoolArray = np.ones(top.size, dtype=bool)
         self._fixed, self._soil = top.prescribed, soil
-        self._answers = IdentityCache[State, SurfaceAnswer](latest=2, first=1)
+        self._responses = IdentityCache[State, SurfaceResponse](latest=2, first=1)
         self.reach(np.empty(0, dtype=np.int64))
 
     @cached_property
@@ -90,7 +90,7 @@ class CondensedTop:
         self.prescribed: BoolArray = np.ones(self.size, dtype=bool)
         self.prescribed[self.reached.dofs] = False
         self.unreached: IntArray = np.flatnonzero(self.prescribed & ~self._fixed)
-        self._answers.forget()
+        self._responses.forget()
 
     def own(self, values: Array) -> Array:
         """The field's slice of a local array."""
@@ -104,20 +104,20 @@ class CondensedTop:
         """Displacement of the whole top (np, 3) since the geostatic start [m]."""
         return self._at(state).displacement
 
-    def _at(self, state: State) -> SurfaceAnswer:
+    def _at(self, state: State) -> SurfaceResponse:
         """Kept for the first state of a step and the last two."""
-        return self._answers.made_of(state, self._answer)
+        return self._responses.made_of(state, self._response)
 
-    def _answer(self, state: State) -> SurfaceAnswer:
+    def _response(self, state: State) -> SurfaceResponse:
         at = self.reached.dofs
         moves = self.own(state.u)[at]
         moved = self.committed.ravel()[at] + moves
         forces = np.asarray(self.reached.stiffness @ moved)
         if not moves.any():
-            return SurfaceAnswer(forces, self.committed)
+            return SurfaceResponse(forces, self.committed)
         out = self.reached.compliance @ forces
         out[at] = moved
-        return SurfaceAnswer(forces, out.reshape(-1, 3))
+        return SurfaceResponse(forces, out.reshape(-1, 3))
 
     def prescribe(self, t: float, u: Array, v: Array, a: Array) -> None:
         for values in (u, v, a):
@@ -128,7 +128,7 @@ class CondensedTop:
 
     def commit(self, state: State) -> None:
         self.committed = self.displacement(state)
-        self._answers.forget()
+        self._responses.forget()
 
     def state(self) -> Saved:
         return {"committed": self.committed, "reached": self.reached.nodes}

@@ -39,7 +39,7 @@ class EnergyFormula(OwnFormula):
         if depth.size and not np.abs(stress).max() <= ZERO_STRESS * np.abs(moduli).max():
             raise LawError(f"psi has a stress of {np.abs(stress).max():.4g} Pa where there is no strain; it must be 0")
 
-    def answer(self, increment: Array, history: Array, dt: float) -> Sequence[Array]:
+    def response(self, increment: Array, history: Array, dt: float) -> Sequence[Array]:
         strain = history[:, 6:] + increment
         stored, stress, moduli = self._energy.at(strain)
         stress = history[:, :6] + stress - self._energy.at(history[:, 6:])[1]

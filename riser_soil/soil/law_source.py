@@ -165,18 +165,18 @@ def arguments(law: type[Any], given: Mapping[str, Any]) -> dict[str, Any]:
     """Parameters as the constructor takes them, enumerations by the names of their members; PydanticCustomError for
     what it does not know or lacks.
     """
-    known = _parameters(law)
-    if known is None:
+    parameters = _parameters(law)
+    if parameters is None:
         return dict(given)
-    names = [name for name in known if name not in GIVEN]
+    names = [name for name in parameters if name not in GIVEN]
     for key in given:
         if key in GIVEN:
             raise _wrong(f"comes from the program, for each point; leave {key} out", key)
-        if key not in known and not _takes_all(known):
+        if key not in parameters and not _takes_all(parameters):
             has = f"known are {', '.join(names)}" if names else "it has none"
             raise _wrong(f"no such parameter of {law.__name__}, {has}; correct or remove it{near(key, names)}", key)
     for name in names:
-        if known[name].default is inspect.Parameter.empty and name not in given and not _is_open(known[name]):
+        if parameters[name].default is inspect.Parameter.empty and name not in given and not _is_open(parameters[name]):
             raise _wrong(f"the constructor of {law.__name__} requires it; add it", name)
     hints = _hints(law)
     return {key: _as_member(key, value, hints.get(key)) for key, value in given.items()}
@@ -184,8 +184,8 @@ def arguments(law: type[Any], given: Mapping[str, Any]) -> dict[str, Any]:
 
 def accepted_by(law: type[Any], values: Mapping[str, Any]) -> dict[str, Any]:
     """Those of the program's values that are parameters of a law's constructor."""
-    known = _parameters(law) or {}
-    return {key: value for key, value in values.items() if key in known}
+    parameters = _parameters(law) or {}
+    return {key: value for key, value in values.items() if key in parameters}
 
 
 def _parameters(law: type[Any]) -> dict[str, inspect.Parameter] | None:
@@ -200,8 +200,8 @@ def _is_open(parameter: inspect.Parameter) -> bool:
     return parameter.kind in (inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL)
 
 
-def _takes_all(known: Mapping[str, inspect.Parameter]) -> bool:
-    return any(each.kind is inspect.Parameter.VAR_KEYWORD for each in known.values())
+def _takes_all(parameters: Mapping[str, inspect.Parameter]) -> bool:
+    return any(each.kind is inspect.Parameter.VAR_KEYWORD for each in parameters.values())
 
 
 def _hints(law: type[Any]) -> dict[str, Any]:

@@ -1,6 +1,6 @@
 """Trial of a law of one's own before a run: what it does wrong at some points, along some paths of strain.
 
-From its start each point is compressed, and sheared in several ways, by strains that grow a thousandfold. Its answer
+From its start each point is compressed, and sheared in several ways, by strains that grow a thousandfold. Its response
 must be finite and of the right shapes, leave its inputs as they are, start from the initial stress, and follow dt only
 where it says so. Its tangent must be the derivative of its stress, by differences: off by no more than `OFF` of the
 elastic moduli, stress and strain being scaled by their square roots, so that a stiff volume hides no error of shear.
@@ -68,7 +68,7 @@ def _begins_at_rest(law: OwnFormula) -> None:
         if wrong.size:
             where = f"at a depth of {law.depth[wrong[0]]:.4g} m"
             raise LawError(f"{where} its {name} modulus at rest is {values[wrong[0]]:.4g} Pa, and must be above 0")
-    stress = law.answer(none, start, 0.0 if law.by_rate else math.inf)[0]
+    stress = law.response(none, start, 0.0 if law.by_rate else math.inf)[0]
     hint = "an increment of no strain, within no time, changes the stress (is the initial one more than it bears?)"
     _same(stress, law, scale, hint)
 
@@ -91,33 +91,34 @@ def _follow(law: OwnFormula, direction: Array, dt: float) -> None:
     for size in SIZES:
         length = size - before
         increments = np.tile(length * (direction + _MOVES), (len(law.depth) // len(_MOVES), 1))
-        answer = _answered(law, increments, history, dt)
-        _check_tangent(law, increments, answer[0], answer[1], length)
+        response = _responded(law, increments, history, dt)
+        _check_tangent(law, increments, response[0], response[1], length)
         if not law.by_rate:
-            _check_time(law, increments, history, answer[0])
-        history, before = np.repeat(answer[2][:: len(_MOVES)], len(_MOVES), axis=0), size
+            _check_time(law, increments, history, response[0])
+        history, before = np.repeat(response[2][:: len(_MOVES)], len(_MOVES), axis=0), size
 
 
-def _answered(law: OwnFormula, increments: Array, history: Array, dt: float) -> Sequence[Array]:
-    """The law's answer to increments and history; LawError where it fails, changes these inputs, or is not finite."""
+def _responded(law: OwnFormula, increments: Array, history: Array, dt: float) -> Sequence[Array]:
+    """The law's response to increments and history; LawError where it fails, changes these inputs, or is not finite."""
     strain, before = increments.copy(), history.copy()
     try:
-        answer = law.answer(strain, before, dt)
+        response = law.response(strain, before, dt)
     except LawError as err:
         raise LawError(f"{at_point(law.depth[0], increments[0])}: {err}") from err
     for name, given, after in (("increment", increments, strain), ("history", history, before)):
         if not np.array_equal(given, after):
             raise LawError(f"{at_point(law.depth[0], increments[0])}: it changes its input {name}; copy it first")
-    for values in answer:
+    for values in response:
         if not np.isfinite(values).all():
             at = _first(values)
-            raise LawError(infinite(law.depth[at], increments[at]).replace("stress or tangent", _named(answer, values)))
-    return answer
+            place = infinite(law.depth[at], increments[at])
+            raise LawError(place.replace("stress or tangent", _named(response, values)))
+    return response
 
 
-def _named(answer: Sequence[Array], values: Array) -> str:
+def _named(response: Sequence[Array], values: Array) -> str:
     names = ("the stress", "the tangent", "the history", "the energy stored", "the elastic strain")
-    return next(name for name, each in zip(names, answer, strict=False) if each is values)
+    return next(name for name, each in zip(names, response, strict=False) if each is values)
 
 
 def _check_tangent(law: OwnFormula, increments: Array, stress: Array, tangent: Array, length: float) -> None:
@@ -159,7 +160,7 @@ def _worst(off: Array) -> tuple[float, int]:
 
 
 def _check_time(law: OwnFormula, increments: Array, history: Array, slow: Array) -> None:
-    fast = _answered(law, increments, history, SECOND)[0]
+    fast = _responded(law, increments, history, SECOND)[0]
     off = np.abs(fast - slow).max(axis=1)
     bad = np.flatnonzero(off > SAME * np.abs(slow).max(axis=1))
     if bad.size:

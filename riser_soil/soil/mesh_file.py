@@ -82,11 +82,11 @@ def _mesh(kind: int, volumes: Sequence[str]) -> Mesh:
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     _, connected = gmsh.model.mesh.getElementsByType(kind)
     cells = np.asarray(connected, dtype=np.int64).reshape(-1, 4 if kind == TETRAHEDRON else 8)
-    known, first = np.unique(np.asarray(tags, dtype=np.int64), return_index=True)
+    numbers, first = np.unique(np.asarray(tags, dtype=np.int64), return_index=True)
     used = np.unique(cells)
-    if not np.isin(used, known).all():
-        raise MeshError(f"soil mesh: cells have {int((~np.isin(used, known)).sum())} nodes that it doesn't hold")
-    points = np.asarray(coordinates).reshape(-1, 3)[first[np.searchsorted(known, used)]]
+    if not np.isin(used, numbers).all():
+        raise MeshError(f"soil mesh: cells have {int((~np.isin(used, numbers)).sum())} nodes that it doesn't hold")
+    points = np.asarray(coordinates).reshape(-1, 3)[first[np.searchsorted(numbers, used)]]
     _, once = np.unique(np.sort(cells, axis=1), axis=0, return_index=True)
     once = np.sort(once)
     mesh = Mesh(kind, points, np.searchsorted(used, cells[once]), np.zeros(len(once), dtype=np.int64))
@@ -98,8 +98,8 @@ def _volumes(mesh: Mesh, cells: IntArray, once: IntArray, names: Sequence[str]) 
     groups = {gmsh.model.getPhysicalName(3, tag): tag for _, tag in gmsh.model.getPhysicalGroups(3)}
     missing = [name for name in names if name not in groups]
     if missing:
-        known = ", ".join(name for name in groups if name) or "none"
-        raise MeshError(f"soil mesh: it has no volume named {missing[0]}; named volumes (physical groups): {known}")
+        named = ", ".join(name for name in groups if name) or "none"
+        raise MeshError(f"soil mesh: it has no volume named {missing[0]}; named volumes (physical groups): {named}")
     _, same = np.unique(np.sort(cells, axis=1), axis=0, return_inverse=True)
     same, inside = same.ravel(), np.zeros((len(names), len(once)), dtype=bool)
     for k, name in enumerate(names):
@@ -158,9 +158,9 @@ def _check_one_piece(mesh: Mesh, owner: IntArray, number: IntArray) -> None:
     n = len(mesh.cells)
     pieces, of_cell = connected_components(coo_array((np.ones(a.size), (a, b)), shape=(n, n)), directed=False)
     if pieces > 1:
-        apart = mesh.points[mesh.cells[of_cell != of_cell[0]][0]].mean(axis=0)
+        middle = mesh.points[mesh.cells[of_cell != of_cell[0]][0]].mean(axis=0)
         raise MeshError(
-            f"soil mesh: it is in {pieces} pieces that no face joins, one at {_place(apart)}; let the volumes share "
+            f"soil mesh: it is in {pieces} pieces that no face joins, one at {_place(middle)}; let the volumes share "
             "their faces (in gmsh: Coherence, before meshing)"
         )
 

@@ -58,8 +58,8 @@ class Terms:
         """Measure over a boundary."""
         if boundary not in BOUNDARIES:
             raise ValueError(f'ds has {" and ".join(BOUNDARIES)}, not "{boundary}"')
-        given = {"quadrature_degree": self.degree}
-        return ufl.Measure("ds", self._mesh, subdomain_id=BOUNDARIES.index(boundary), metadata=given)
+        metadata = {"quadrature_degree": self.degree}
+        return ufl.Measure("ds", self._mesh, subdomain_id=BOUNDARIES.index(boundary), metadata=metadata)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,24 +100,24 @@ class SoilForms:
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
         force, rate = (weights.force, weights.shift_v) if self._inert else (1.0, _inverse(state.dt))
-        given = self._given(state)
+        coefficients = self._coefficients(state)
         for each in self._integrals:
             key = "soil" if each.boundary is None else f"{self.name}, {each.boundary}"
             for number, (kernel, columns) in each.slopes.items():
                 share = force * (1.0 if number == U else rate)
-                values[key] += share * self._values(kernel, each.boundary, columns, given, 2)
+                values[key] += share * self._values(kernel, each.boundary, columns, coefficients, 2)
 
     def _force(self, state: State) -> Array:
         """Nodal forces (size,)."""
-        given, out = self._given(state), np.zeros(self._soil.field.size)
+        coefficients, out = self._coefficients(state), np.zeros(self._soil.field.size)
         for each in self._integrals:
             kernel, columns = each.force
             dofs = self._dofs if each.boundary is None else self._dofs[self._facets[each.boundary][:, 0]]
-            values = self._values(kernel, each.boundary, columns, given, 1)
+            values = self._values(kernel, each.boundary, columns, coefficients, 1)
             out += np.bincount(dofs.ravel(), values.ravel(), minlength=out.size)
         return out
 
-    def _given(self, state: State) -> tuple[Array, Array, Array]:
+    def _coefficients(self, state: State) -> tuple[Array, Array, Array]:
         """Displacement, velocity and time of each cell (nc, n)."""
         field, dofs = self._soil.field, self._dofs
         u = field.total + field.own(state.u)
@@ -130,11 +130,16 @@ class SoilForms:
         return self._rate if state.dt == 0.0 else own(state.u) * _inverse(state.dt)
 
     def _values(
-        self, kernel: Any, boundary: str | None, columns: tuple[int, ...], given: tuple[Array, Array, Array], rank: int
+        self,
+        kernel: Any,
+        boundary: str | None,
+        columns: tuple[int, ...],
+        coefficients: tuple[Array, Array, Array],
+        rank: int,
     ) -> Array:
         """Vectors (m, n), rank 1, or matrices (m, n, n) of the cells or a boundary's facets."""
         facets = None if boundary is None else self._facets[boundary]
-        rows = [given[number] if facets is None else given[number][facets[:, 0]] for number in columns]
+        rows = [coefficients[number] if facets is None else coefficients[number][facets[:, 0]] for number in columns]
         return self._soil.cells.integrals(kernel, rows, rank, facets)
 
     def energy(self, state: State) -> Energy:
@@ -212,8 +217,8 @@ def _number(integral: Any) -> Any:
 
 def _alone(integral: Any, degree: int) -> Any:
     """A form of one integral, over all that its kernel is called for."""
-    given = {"quadrature_degree": integral.metadata().get("quadrature_degree", degree)}
-    return ufl.Form([integral.reconstruct(subdomain_id="everywhere", metadata=given)])
+    metadata = {"quadrature_degree": integral.metadata().get("quadrature_degree", degree)}
+    return ufl.Form([integral.reconstruct(subdomain_id="everywhere", metadata=metadata)])
 
 
 def _slope(form: Any, terms: Terms, number: int) -> Any:

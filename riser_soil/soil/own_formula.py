@@ -73,7 +73,7 @@ class OwnFormula(ABC):
     def _elastic(self) -> tuple[Array, Array]:
         """Bulk and shear modulus (n,) [Pa] nearest to the tangent of an increment that is none."""
         dt = 0.0 if self.by_rate else math.inf
-        C = self.answer(np.zeros((len(self.depth), 6)), self.start(), dt)[1]
+        C = self.response(np.zeros((len(self.depth), 6)), self.start(), dt)[1]
         bulk = np.einsum("i,nij,j->n", mandel.UNIT, C, mandel.UNIT) / 9.0
         return bulk, np.einsum("ij,nij->n", mandel.DEVIATOR, C) / 10.0
 
@@ -81,25 +81,25 @@ class OwnFormula(ABC):
         return np.column_stack((self.initial, np.zeros((len(self.initial), len(self.columns) - 6))))
 
     @abstractmethod
-    def answer(self, increment: Array, history: Array, dt: float) -> Sequence[Array]:
+    def response(self, increment: Array, history: Array, dt: float) -> Sequence[Array]:
         """Stress, tangent, history, and where it is known energy stored and elastic strain; LawError."""
 
     def update(self, strain_increment: Array, history: Array, dt: float = math.inf) -> StressUpdate:
-        """An answer that is none, nan, makes the solver try a smaller step."""
+        """An response that is none, nan, makes the solver try a smaller step."""
         try:
-            answer = self.answer(strain_increment, history, dt)
-            self._warn_of_infinite(strain_increment, answer[0], answer[1])
+            response = self.response(strain_increment, history, dt)
+            self._warn_of_infinite(strain_increment, response[0], response[1])
         except LawError as err:
             self._warn(f"{err}: the step is tried again with a smaller one")
-            answer = [np.full((len(self.depth), *shape), np.nan) for shape in ((6,), (6, 6), (len(self.columns),))]
-        return self._with_energy(answer)
+            response = [np.full((len(self.depth), *shape), np.nan) for shape in ((6,), (6, 6), (len(self.columns),))]
+        return self._with_energy(response)
 
-    def _with_energy(self, answer: Sequence[Array]) -> StressUpdate:
-        if len(answer) == 5:
-            return StressUpdate(*answer)
-        change = answer[0] - self.initial
+    def _with_energy(self, response: Sequence[Array]) -> StressUpdate:
+        if len(response) == 5:
+            return StressUpdate(*response)
+        change = response[0] - self.initial
         elastic = mandel.elastic_strain(self.bulk, self.shear, change)
-        return StressUpdate(answer[0], answer[1], answer[2], 0.5 * mandel.product(change, elastic), elastic)
+        return StressUpdate(response[0], response[1], response[2], 0.5 * mandel.product(change, elastic), elastic)
 
     def _warn_of_infinite(self, increment: Array, stress: Array, tangent: Array) -> None:
         finite = np.isfinite(stress).all(axis=1) & np.isfinite(tangent).all(axis=(1, 2))
@@ -157,14 +157,14 @@ class UpdateFormula(OwnFormula):
             return super().start()
         return as_array(call_user_code(own), (len(self.depth), len(self.columns)), "start()")
 
-    def answer(self, increment: Array, history: Array, dt: float) -> Sequence[Array]:
-        answer = call_user_code(lambda: self.law.update(increment, history, dt))
-        if not isinstance(answer, tuple | list) or len(answer) not in (3, 5):
+    def response(self, increment: Array, history: Array, dt: float) -> Sequence[Array]:
+        response = call_user_code(lambda: self.law.update(increment, history, dt))
+        if not isinstance(response, tuple | list) or len(response) not in (3, 5):
             what = "stress, tangent, history, and may return stored and elastic behind them"
-            raise LawError(f"update must return {what}, and returns {_kind(answer)}")
+            raise LawError(f"update must return {what}, and returns {_kind(response)}")
         n = len(self.depth)
         shapes = ((n, 6), (n, 6, 6), (n, len(self.columns)), (n,), (n, 6))
-        return [as_array(*each) for each in zip(answer, shapes, StressUpdate._fields, strict=False)]
+        return [as_array(*each) for each in zip(response, shapes, StressUpdate._fields, strict=False)]
 
 
 def _kind(value: Any) -> str:
@@ -211,10 +211,10 @@ class ConstitutiveFormula(OwnFormula):
         probe[:, 5] = PROBE
         answers = np.abs(self._evaluated(probe, start, SHORTEST, [*range(6)])[0] - self.initial)[:, 4:].max(axis=0)
         if not 4.0 * answers.min() < answers.max():
-            raise LawError("whether yz or xz is its fifth component can't be seen from its answer to a shear yz")
+            raise LawError("whether yz or xz is its fifth component can't be seen from its response to a shear yz")
         return [0, 1, 2, 3, 4, 5] if answers[1] > answers[0] else [0, 1, 2, 3, 5, 4]
 
-    def answer(self, increment: Array, history: Array, dt: float) -> Sequence[Array]:
+    def response(self, increment: Array, history: Array, dt: float) -> Sequence[Array]:
         return self._evaluated(increment, history, min(max(dt, SHORTEST), LONGEST), self._order)
 
     def _evaluated(self, increment: Array, history: Array, dt: float, order: list[int]) -> Sequence[Array]:

@@ -50,8 +50,8 @@ class RequestedFields:
             if name in choices():
                 raise SceneError(f"output.soil_fields: {name} is one of output.fields; ask for it there")
             if name not in TENSORS and name not in own:
-                known = f"of this soil there are {', '.join((*TENSORS, HISTORIES, *own))}"
-                raise SceneError(f"output.soil_fields: there is no {name}: {known}; correct or remove it")
+                choice = f"of this soil there are {', '.join((*TENSORS, HISTORIES, *own))}"
+                raise SceneError(f"output.soil_fields: there is no {name}: {choice}; correct or remove it")
         if EFFECTIVE in names:
             self._check_effective(columns)
         return FieldsOfLaw(tuple(dict.fromkeys(names)), own, tuple(columns))

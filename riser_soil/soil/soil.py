@@ -78,7 +78,7 @@ class Soil:
         _check_start(grid, self.law, self._initial, self.cells.at_points(self._depth), K0)
         self._law_state = _at_rest(self.law, self._initial)
         self._in_balance = self._law_state.stress  # of the last step, before the law is evaluated again for moved cells
-        self._last: _Answer | None = None
+        self._last: _Response | None = None
         self._elastic_share = 0.0
         self._volumes: Array = self.cells.volumes.flatten()
         self._load = self._internal(self._initial) if start == "geostatic" else self._weight()
@@ -101,7 +101,7 @@ class Soil:
         return {"soil": MatrixBlock(rows, rows)}
 
     def residual(self, state: State, forces: Forces) -> None:
-        self.field.own(forces.force if self._has_inertia else forces.end)[:] += self._answer(state).force
+        self.field.own(forces.force if self._has_inertia else forces.end)[:] += self._response(state).force
 
     def fix_boundary(self, fixed: bool) -> None:
         """Fix bottom and sides as by default, or let them move; in systems that are made from then on."""
@@ -119,7 +119,7 @@ class Soil:
         self._elastic_share = share
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        K = self.cells.stiffness(self._moduli(self._answer(state).update.tangent))
+        K = self.cells.stiffness(self._moduli(self._response(state).update.tangent))
         values["soil"] += weights.force * K if self._has_inertia else K
 
     def _moduli(self, consistent: Array) -> Array:
@@ -136,7 +136,7 @@ class Soil:
         With σ0 the initial stress and εe the elastic strain since then, potential = ∫ σ0:εe − load·u, which is −∫ σ0:εp
         for a geostatic start: nothing, as long as K0 = 1.
         """
-        u, _, _, update, _ = self._answer(state)
+        u, _, _, update, _ = self._response(state)
         started = float(np.einsum("n,ni,ni->", self._volumes, self._initial, update.elastic))
         return Energy(
             strain=float(self._volumes @ update.stored), potential=started + self._lifted - float(self._load @ u)
@@ -152,7 +152,7 @@ class Soil:
         product of the changes of their own stress and strain. With inertia the mean stress of the step counts, and
         nothing is the scheme's.
         """
-        _, _, strain, update, _ = self._answer(after)
+        _, _, strain, update, _ = self._response(after)
         if self._has_inertia:
             absorbed = self.cells.integral(0.5 * (update.stress + self._law_state.stress), strain)
             return Work(dissipated=absorbed - self._stores(update) + self._stored)
@@ -167,7 +167,7 @@ class Soil:
 
     def commit(self, state: State) -> None:
         """Soil that has not moved, and whose history has not changed, answers as before."""
-        u, dt, _, update, _ = self._answer(state)
+        u, dt, _, update, _ = self._response(state)
         self._stored, self._lifted = self._stores(update), self._lifted - float(self._load @ u)
         self._in_balance = update.stress
         if u.any() and self.moves:
@@ -177,7 +177,7 @@ class Soil:
         self._law_state = update._replace(tangent=np.empty(0))
 
     def _move(self, u: Array, dt: float) -> StressUpdate:
-        """Let the nodes move by u within dt [s]; the law's answer to that."""
+        """Let the nodes move by u within dt [s]; the law's response to that."""
         self._cells_ahead = False
         update = moved_on(self.cells, self.points, u, self.law, self._law_state.history, dt)
         self.cells.renew(self.points + u.reshape(-1, 3))
@@ -324,19 +324,19 @@ class Soil:
         strength_used = self.law.overstress(stress)
         return -mandel.mean(stress), mandel.von_mises(stress), strength_used, self._plastic_strain()
 
-    def _answer(self, state: State) -> _Answer:
-        """The law's answer at a trial state: the last one, as long as neither the soil's increments, the time that they
-        take, where it counts, nor its history change.
+    def _response(self, state: State) -> _Response:
+        """The response at a trial state: the last one, as long as neither the soil's increments, their time, where it
+        counts, nor its history change.
         """
         u, dt = self.field.own(state.u), state.dt if self.law.by_rate else math.inf
         if self._last is None or dt != self._last.dt or not np.array_equal(u, self._last.u):
-            self._last = self._new_answer(u.copy(), dt)
+            self._last = self._new_response(u.copy(), dt)
         return self._last
 
-    def _new_answer(self, u: Array, dt: float) -> _Answer:
+    def _new_response(self, u: Array, dt: float) -> _Response:
         strain = self.cells.strain(u)
         update = self.law.update(strain, self._law_state.history, dt)
-        return _Answer(u, dt, strain, update, self._internal(update.stress) - self._load)
+        return _Response(u, dt, strain, update, self._internal(update.stress) - self._load)
 
     def _plastic_strain(self) -> Array:
         """Equivalent plastic strain (n,), 0 for a law without plasticity."""
@@ -378,8 +378,8 @@ class Soil:
             self._load = self._initial_reaction + self._weight()
 
 
-class _Answer(NamedTuple):
-    """Answer of the soil to its increments u within dt [s]: strain increment (n, 6), the law's answer, and residual
+class _Response(NamedTuple):
+    """Response of the soil to its increments u within dt [s]: strain increment (n, 6), that of the law, and residual
     [N].
     """
 

@@ -132,15 +132,15 @@ class SoilCells:
         return self.integrals(self._kernels.dashpots, [impedances], 2, facets)
 
     def integrals(
-        self, kernel: CFunction, given: Sequence[Array], rank: int, facets: IntArray | None = None
+        self, kernel: CFunction, coefficients: Sequence[Array], rank: int, facets: IntArray | None = None
     ) -> Array:
         """Vectors (m, d nn), rank 1, or matrices (m, d nn, d nn), rank 2, of a form over all cells, or over facets
-        (m, 2), with its coefficients given (m, ...).
+        (m, 2), with its coefficients (m, ...).
         """
         cells, n = slice(None) if facets is None else facets[:, 0], self._dofs.shape[1]
         at = np.ascontiguousarray(self._placed.at[cells])
         numbers = np.zeros(len(at), dtype=np.int64) if facets is None else np.ascontiguousarray(facets[:, 1])
-        rows = np.concatenate([*given, np.zeros((len(at), 1))], axis=1)
+        rows = np.concatenate([*coefficients, np.zeros((len(at), 1))], axis=1)
         out = np.empty((len(at), *[n] * rank))
         cell_loops.write_integrals(kernel, at, numbers, rows, out)
         return np.asarray(out * self._shares[cells].reshape(-1, *[1] * rank))

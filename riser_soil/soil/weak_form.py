@@ -19,7 +19,7 @@ gradients are put at their places in space, so that the laws see six components 
 With inertia there is the mass, ∫ ρ a·v dx, of a quadrature of its own, and on a boundary where waves leave dashpots of
 the impedances ρ c_p along the normal and ρ c_s along the side.
 
-Forms belong to no mesh: a kernel is given a cell's nodes where they are. Stress σ, moduli C and unit weight γ are
+Forms belong to no mesh: a kernel is coefficient a cell's nodes where they are. Stress σ, moduli C and unit weight γ are
 numbers at the points of the quadrature. One form has one quadrature degree: FFCx is silently wrong where a rule of one
 point meets another.
 """
@@ -44,19 +44,19 @@ class WeakForm:
         self.axes, vector = axes, lagrange(cell, degree, len(axes))
         mesh = ufl.Mesh(vector)  # isoparametric
 
-        def given(element: Any, number: int) -> Any:  # FFCx 0.5 can't compile what has a number of two digits
+        def coefficient(element: Any, number: int) -> Any:  # FFCx 0.5 can't compile what has a number of two digits
             return ufl.Coefficient(ufl.FunctionSpace(mesh, element), count=number)
 
         self.mesh, self.mean_dilatation = mesh, mean_dilatation
         self.dx = ufl.Measure("dx", mesh, metadata={"quadrature_degree": quadrature})
-        self.stress = given(at_points(cell, quadrature, 6), 0)
-        self.moduli = given(at_points(cell, quadrature, 36), 1)
-        self.unit_weight = given(at_points(cell, quadrature, 1), 2)
-        self.displacement = given(vector, 3)
-        self.dilatation = given(constant(cell), 4)
-        self.nodal = given(lagrange(cell, degree), 5)
-        self.density = given(constant(cell), 6)
-        self.impedances = given(constant(cell, 2), 7)
+        self.stress = coefficient(at_points(cell, quadrature, 6), 0)
+        self.moduli = coefficient(at_points(cell, quadrature, 36), 1)
+        self.unit_weight = coefficient(at_points(cell, quadrature, 1), 2)
+        self.displacement = coefficient(vector, 3)
+        self.dilatation = coefficient(constant(cell), 4)
+        self.nodal = coefficient(lagrange(cell, degree), 5)
+        self.density = coefficient(constant(cell), 6)
+        self.impedances = coefficient(constant(cell, 2), 7)
         whole = {"quadrature_degree": max(quadrature, 2 * degree + 2)}  # of two displacements, in distorted cells
         self.dx_of_products = ufl.Measure("dx", mesh, metadata=whole)
         self.ds_of_products = ufl.Measure("ds", mesh, metadata=whole)

@@ -38,19 +38,19 @@ class StopLimits(NamedTuple):
 class Convergence:
     """Convergence of a step: the norms [N] of its residuals so far, and what they say by the limits.
 
-    apart: the last norm of the residual's share at nodes that nothing touches [N]; most: iterations, which may be
+    untouched: the last norm of the residual's share at nodes that nothing touches [N]; most: iterations, which may be
     raised; first: the iteration from which the method is Newton's own.
     """
 
     def __init__(self, limits: StopLimits) -> None:
         self.limits, self.most, self.first = limits, limits.most, 0
         self.norms: list[float] = []
-        self.apart = math.nan
+        self.untouched = math.nan
 
-    def add(self, norm: float, apart: float | None = None) -> None:
+    def add(self, norm: float, untouched: float | None = None) -> None:
         """Add the norm [N] of a residual, and of its share at nodes that nothing touches: all of it by default."""
         self.norms.append(norm)
-        self.apart = norm if apart is None else apart
+        self.untouched = norm if untouched is None else untouched
 
     @property
     def iterations(self) -> int:
@@ -85,7 +85,7 @@ class Convergence:
             return False
         before, norm = self.norms[-2:]
         reuse = self.limits.reuse
-        return norm < STALLED * before and (norm < reuse * before or self.apart < reuse * norm)
+        return norm < STALLED * before and (norm < reuse * before or self.untouched < reuse * norm)
 
 
 def stalled(norms: list[float]) -> bool:

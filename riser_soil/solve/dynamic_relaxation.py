@@ -159,15 +159,15 @@ class EquilibriumAttempts:
 
 
 def _descend(system: System, newton: Newton, part: Relaxation, t: float) -> RelaxationResult:
-    stiffest, done, moved, attempts = part.drag * STIFFEST, RelaxationResult(), np.inf, EquilibriumAttempts()
+    stiffest, result, moved, attempts = part.drag * STIFFEST, RelaxationResult(), np.inf, EquilibriumAttempts()
     for _ in range(MOST_STEPS):
         slow = moved < NEARLY_THERE * part.shortest
         if slow and attempts.due() and not _still_leaving(newton, part, t, attempts):
             equilibrium = _without_drag(system, newton, part, t, attempts)
-            done.branch_switches += attempts.leaving
+            result.branch_switches += attempts.leaving
             if equilibrium is not None:
-                done.iterations += equilibrium.iterations
-                return done
+                result.iterations += equilibrium.iterations
+                return result
         if attempts.leaving:
             _stabilise(newton, part, t)
         try:
@@ -177,7 +177,7 @@ def _descend(system: System, newton: Newton, part: Relaxation, t: float) -> Rela
             if part.drag > stiffest:
                 raise SolveError(f"dynamic relaxation fails even in tiny pseudo-time steps: {failure}") from failure
             continue
-        done.iterations += solution.iterations
+        result.iterations += solution.iterations
         moved = _largest_increment(part, solution)
         part.drag *= 0.4 if solution.iterations <= QUICK else 1.0
     raise SolveError(f"dynamic relaxation finds no equilibrium in {MOST_STEPS} pseudo-time steps")

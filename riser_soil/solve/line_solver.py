@@ -70,14 +70,14 @@ def _system_with(system: System, parts: Sequence[Part]) -> Callable[[Sequence[Pa
         from riser_soil.solve.joint_border import joint_border
 
         makers.append(joint_border(hung))
-    known = [make for make in makers if make is not None]
-    if len(known) < len(makers):
+    couplings = [coupling for coupling in makers if coupling is not None]
+    if len(couplings) < len(makers):
         return None
     from riser_soil.solve.dense_border import DenseBorder
 
     def make(lines: Sequence[PackedLine]) -> LineSystem:
         border = DenseBorder(lines)
-        return LineSystem(lines, [each(border, lines) for each in known], border)
+        return LineSystem(lines, [coupling(border, lines) for coupling in couplings], border)
 
     return make
 

@@ -188,8 +188,8 @@ class LineSystem:
         there is room for.
         """
         self.evaluate()
-        norm, apart, in_play = as_list(self._norms)
-        self.convergence.add(norm, apart)
+        norm, untouched, in_play = as_list(self._norms)
+        self.convergence.add(norm, untouched)
         if self._failure[0] != kernels.NONE:
             return OUTGROWN
         return self.convergence.ending(in_play, self._at_round_off)

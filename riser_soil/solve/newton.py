@@ -114,17 +114,18 @@ def solver_of(system: System, dynamic: bool, settings: NewtonSettings) -> Newton
 
 
 def balance_under_fixed_lines(
-    comm: Communicator, model: Model, t: float, settings: NewtonSettings, clock: Timer, known: Patterns | None = None
+    comm: Communicator, model: Model, t: float, settings: NewtonSettings, clock: Timer, patterns: Patterns | None = None
 ) -> None:
     """Solve for the equilibrium of the parts of group E, soil and contact, while no line moves, and commit it: to
-    `BALANCED`, as the next step balances the rest, or all of it where this fails. known: see `Matrix`. Collective.
+    `BALANCED`, as the next step balances the rest, or all of it where this fails. patterns: of earlier matrices, see
+    `Matrix`. Collective.
     """
     settings = replace(settings, tolerance=max(settings.tolerance, BALANCED))
     parts = [part for part in model.parts if part.traits.groups == "E"]
     with ExitStack() as stack:
         for line in model.lines:
             stack.enter_context(line.all_prescribed())
-        system = System(comm, replace(model, parts=parts), clock, known)
+        system = System(comm, replace(model, parts=parts), clock, patterns)
         newton = Newton(system, settings)
         with destroyed_together(comm, newton.destroy, system.destroy):
             before = State.at_rest(t, system.numbering.size)

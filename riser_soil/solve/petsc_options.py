@@ -32,15 +32,15 @@ COMMON = (
 _BARE = {None: None, True: None, False: "false"}
 
 
-def given() -> dict[str, str | None]:
+def user_options() -> dict[str, str | None]:
     """The user's options, without the prefix; None for those without a value."""
-    known = PETSc.Options().getAll()
-    return {name.removeprefix(PREFIX): value for name, value in known.items() if name.startswith(PREFIX)}
+    options = PETSc.Options().getAll()
+    return {name.removeprefix(PREFIX): value for name, value in options.items() if name.startswith(PREFIX)}
 
 
-class Given(NamedTuple):
-    """What the user's options take the place of: any: whether there are some; tolerances: the project's test;
-    line_search, linear_solver: its own; linear_tolerance: what it asks of linear systems.
+class UserOptions(NamedTuple):
+    """What the user's options replace. any: whether there are some; tolerances: the program's test of convergence;
+    line_search, linear_solver: its own; linear_tolerance: that of its linear systems.
     """
 
     any: bool
@@ -50,9 +50,9 @@ class Given(NamedTuple):
     linear_tolerance: bool
 
     @classmethod
-    def now(cls) -> Given:
+    def now(cls) -> UserOptions:
         """By the options in PETSc's database."""
-        names = given().keys()
+        names = user_options().keys()
         one_of = (
             ("snes_rtol", "snes_atol", "snes_stol"),
             ("snes_linesearch_type", "snes_type"),
@@ -76,9 +76,9 @@ def as_text(options: Iterable[tuple[str, object]]) -> dict[str, str | None]:
 
 @contextmanager
 def defaults(options: Mapping[str, str | None]) -> Iterator[None]:
-    """Options under the project's prefix while the block lasts; what is given already wins."""
-    database, known = PETSc.Options(), given()
-    added = [PREFIX + name for name in options if name not in known]
+    """Options under the project's prefix while the block lasts; the user's own win."""
+    database, of_user = PETSc.Options(), user_options()
+    added = [PREFIX + name for name in options if name not in of_user]
     for name in added:
         database[name] = options[name.removeprefix(PREFIX)]
     try:
@@ -93,21 +93,21 @@ def set_from_options(snes: PETSc.SNES, options: Mapping[str, str | None]) -> Non
 
     SceneError where one is not the user's to choose, or has a value that PETSc refuses.
     """
-    known = given()
-    for name in OWN.keys() & known.keys():
+    of_user = user_options()
+    for name in OWN.keys() & of_user.keys():
         raise SceneError(f"-{PREFIX}{name} {WHERE}: {OWN[name]}")
     try:
         with defaults(options):
             snes.setFromOptions()
     except PETSc.Error as err:
         said = str(err).splitlines()[-1].partition("] ")[2]
-        named = [f"{name} {value}" for name, value in known.items() if value and value in said.split()]
+        named = [f"{name} {value}" for name, value in of_user.items() if value and value in said.split()]
         raise SceneError(f"-{PREFIX}{', '.join(named) or '*'} {WHERE}: PETSc refuses the value: {said}") from err
 
 
 def refuse_unread(snes: PETSc.SNES) -> None:
     """SceneError where no object has looked for one of the user's options, though SNES has solved something."""
-    for name in given():
+    for name in user_options():
         if not _is_read(PREFIX + name):
             near = get_close_matches(name, [each for each in COMMON if each != name], n=1)
             meant = f"did you mean {near[0]}? " if near else "leave it out; "

@@ -22,7 +22,7 @@ from riser_soil.core.system import System
 from riser_soil.solve.convergence import CONVERGED, DIVERGED, ITERATING, NOT_FINITE, TOO_MANY
 from riser_soil.solve.newton_loop import Balance, Loop
 from riser_soil.solve.newton_settings import NewtonSettings
-from riser_soil.solve.petsc_options import PREFIX, Given, as_text, defaults, refuse_unread, set_from_options
+from riser_soil.solve.petsc_options import PREFIX, UserOptions, as_text, defaults, refuse_unread, set_from_options
 from riser_soil.solve.tangent_solver import TangentSolver
 
 REASON = PETSc.SNES.ConvergedReason
@@ -43,10 +43,10 @@ class SnesLoop(Loop):
         self._system, self._settings, self._balance = system, settings, balance
         with ExitStack() as stack:
             stack.enter_context(defaults(as_text(settings.petsc_options)))
-            self._given = given = Given.now()
-            self._tangents = TangentSolver(system, settings.linear, given)
+            self._user = user = UserOptions.now()
+            self._tangents = TangentSolver(system, settings.linear, user)
             before_soil = settings.has_soil and not system.model.others  # whose solvers read options, too
-            self._all_read = before_soil or not given.any
+            self._all_read = before_soil or not user.any
             self.linear, self.factorises = self._tangents.solver, self._tangents.solver.factorises
             self._create()
             self._options = stack.pop_all()
@@ -61,7 +61,7 @@ class SnesLoop(Loop):
         snes.setJacobian(self._jacobian, self._system.matrix.mat)
         snes.setConvergenceTest(self._test)
         snes.setTolerances(rtol=0.0, atol=0.0, stol=0.0, max_it=self._settings.max_iterations)
-        if self._settings.line_search and not self._given.line_search:
+        if self._settings.line_search and not self._user.line_search:
             snes.setLineSearchPreCheck(self._shorten)  # before "basic", which takes all of what it leaves
         self._tangents.attach(snes.getKSP())
         set_from_options(snes, {"snes_linesearch_type": "basic", **self.linear.options})
@@ -78,11 +78,11 @@ class SnesLoop(Loop):
 
     def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
         x = np.array(self._x.array_r)
-        if self._given.line_search and iteration > 0 and norms[1] > 0.0:
+        if self._user.line_search and iteration > 0 and norms[1] > 0.0:
             moved = self._system.sum([float(np.sum((x - self._before) ** 2))])[0] ** 0.5
             self._balance.note_step_length(moved / norms[1])
         self._before = x
-        small = self._given.small(snes, iteration, *norms) if self._given.tolerances else None
+        small = self._user.small(snes, iteration, *norms) if self._user.tolerances else None
         return int(REASONS[self._balance.judge(x, np.array(self._f.array_r), small)])
 
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> bool:
@@ -152,6 +152,6 @@ class SnesLoop(Loop):
 
 def _ending(reason: int) -> str:
     """How SNES has ended, in the words of `convergence`; failures by PETSc's name."""
-    known = {number: name for name, number in REASONS.items()}
+    names_of = {number: name for name, number in REASONS.items()}
     names = (name for name, value in vars(REASON).items() if value == reason and name.startswith("DIV"))
-    return known.get(reason) or next(names, str(reason)).lower()
+    return names_of.get(reason) or next(names, str(reason)).lower()

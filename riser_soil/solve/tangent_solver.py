@@ -18,7 +18,7 @@ from riser_soil.solve.iterative_solver import IterativeSolver, solid_of
 from riser_soil.solve.kept_factors import KeptFactors
 from riser_soil.solve.linear_solver import LinearSolver, complaint, raised
 from riser_soil.solve.newton_loop import Balance
-from riser_soil.solve.petsc_options import Given
+from riser_soil.solve.petsc_options import UserOptions
 from riser_soil.solve.riser_above_soil import RiserAboveSoil
 from riser_soil.solve.section_solver import SectionSolver, sections_of
 
@@ -69,9 +69,9 @@ class TangentSolver:
     more.
     """
 
-    def __init__(self, system: System, kind: str, given: Given) -> None:
-        self._system, self._given, self.used, self.again = system, given, False, False
-        self.solver = linear_solver(system, kind, given.linear_solver)
+    def __init__(self, system: System, kind: str, user: UserOptions) -> None:
+        self._system, self._user, self.used, self.again = system, user, False, False
+        self.solver = linear_solver(system, kind, user.linear_solver)
 
     def attach(self, ksp: PETSc.KSP) -> None:
         """Set a KSP up for the matrix that the system has now."""
@@ -80,7 +80,7 @@ class TangentSolver:
         self._levers.array_w[:] = system.numbering.to_global(system.levers)
         self.solver.attach(ksp, self._levers)
         self._alone: tuple[RiserAboveSoil, PETSc.KSP] | None = None
-        if system.whole_soil is not None and not self._given.linear_solver:
+        if system.whole_soil is not None and not self._user.linear_solver:
             self._alone = RiserAboveSoil(system), PETSc.KSP().create(system.comm)
             self._alone[0].attach(self._alone[1], self._levers)
 
@@ -116,7 +116,7 @@ class TangentSolver:
 
     def _choose(self, f: PETSc.Vec, balance: Balance) -> PETSc.KSP:
         """The solver of the present tangent for a residual, however exact it is to be."""
-        if self.solver.reads_mat or self._given.any:
+        if self.solver.reads_mat or self._user.any:
             self._system.matrix.write()
         if self._alone is not None:
             above_soil, ksp = self._alone
@@ -127,7 +127,7 @@ class TangentSolver:
 
     def _tighten(self, tolerance: float) -> None:
         """Solve to a tolerance from now on, where the user gives none."""
-        if not self._given.linear_tolerance:
+        if not self._user.linear_tolerance:
             self._ksp.setTolerances(rtol=tolerance)
 
     def drop(self) -> None:

@@ -273,8 +273,8 @@ class TimeStepper:
             if not part.renew(self.before):
                 continue
             if self.scheme.dynamic:
-                given = system.comm, system.model, self.before.t, self.newton.settings, system.clock
-                balance_under_fixed_lines(*given, self._patterns_under_fixed_lines)
+                arguments = system.comm, system.model, self.before.t, self.newton.settings, system.clock
+                balance_under_fixed_lines(*arguments, self._patterns_under_fixed_lines)
                 self.newton.renew()  # the balance has chosen patterns of its own
             part.lose(self.energy.total - system.energy(self.before).total)
             self._forces = system.forces(self.before)

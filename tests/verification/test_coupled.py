@@ -186,7 +186,7 @@ def pressed(kind: str) -> list[list[Drop]]:
 def yielding(soil: Soil, state: State) -> frozenset[int]:
     """Points of the soil whose plastic strain grows in the step to a trial state."""
     plastic = soil.law.columns.index(PLASTIC_STRAIN)
-    grown = soil._answer(state).update.history[:, plastic] > soil._law_state.history[:, plastic]
+    grown = soil._response(state).update.history[:, plastic] > soil._law_state.history[:, plastic]
     return frozenset(as_list(np.flatnonzero(grown)))
 
 

@@ -86,7 +86,7 @@ def test_loads_lag_behind_no_step() -> None:
 
 def test_a_geometry_that_does_not_settle_ends_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(updated_geometry, "LAG", -1.0)
-    with pytest.raises(SolveError, match="the geometry that its forces are found on"):
+    with pytest.raises(SolveError, match="the geometry that its forces are computed on"):
         sink(sinking(4, 0.1, 2))
 
 

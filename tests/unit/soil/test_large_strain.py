@@ -181,7 +181,7 @@ def test_energy_is_balanced_over_steps_that_move(kind: str, law: Any) -> None:
         target[free] += 0.005 * (n + 1) * rng.uniform(-1.0, 1.0, (np.count_nonzero(free), 3))
         u = (target - soil.points).ravel()
         state, rest = State(1.0, u, u, u), State.at_rest(0.0, soil.field.size)
-        force = soil._answer(state).force
+        force = soil._response(state).force
         put_in, turned_over = float(force @ u), soil.work(rest, state)
         after = soil.energy(state).total
         assert after - stored + turned_over.dissipated == pytest.approx(put_in, rel=1e-10)

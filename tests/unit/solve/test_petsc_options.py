@@ -18,7 +18,7 @@ from riser_soil.solve.linear_solver import raised
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.newton_loop import OutgrownError
 from riser_soil.solve.newton_settings import NewtonSettings
-from riser_soil.solve.petsc_options import PREFIX, given
+from riser_soil.solve.petsc_options import PREFIX, user_options
 from riser_soil.solve.snes import SnesLoop
 from riser_soil.solve.step import NotConvergedError, Solution, Step
 from riser_soil.solve.step_iteration import StepIteration
@@ -49,7 +49,7 @@ def solved(tolerance: float = 1e-10, most: int = 20, **options: Any) -> Solution
 def none_left() -> Iterator[None]:
     """Options of a system go with it."""
     yield
-    assert given() == {}
+    assert user_options() == {}
 
 
 def test_monitors_print_the_norms(capfd: pytest.CaptureFixture[str]) -> None:
