@@ -252,8 +252,8 @@ def add_tangent_at(
 
     by_place: derivative of the force by the place of the arm's end. Rn, Theta: frame at the step's start and rotation.
     """
-    moved = matscale(-1.0, matmul(skew(arm), at.H))  # the arm's end, by the rotation dofs
-    back, by_turn = transpose(moved), matmul(by_place, moved)
+    end_by_turn = matscale(-1.0, matmul(skew(arm), at.H))  # place of the arm's end, by the rotation dofs
+    back, by_turn = transpose(end_by_turn), matmul(by_place, end_by_turn)
     own = matmul(transpose(at.H), matmul(matmul(skew(force), skew(arm)), at.H))
     turning = matadd(matmul(back, by_turn), matadd(own, moment_stiffness(Rn, Theta, cross(arm, force))))
     add_blocks(K, weight, by_place, by_turn, matmul(back, by_place), turning)

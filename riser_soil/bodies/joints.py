@@ -276,16 +276,16 @@ def conjugate(laws: Laws, at: JointPlaces, share: float) -> Array:
 def add_tangent(K: Array, weight: float, laws: Laws, at: JointPlaces, share: float) -> None:
     """Add weight times the derivative of `conjugate` to K (m, 12, 12)."""
     gap, turn = gaps(laws, at, share), turns(laws, at, share)
-    moved, turned, signs = np.zeros((3, 12)), np.zeros((3, 12)), np.array([1.0, -1.0])
+    gap_by, turn_by, signs = np.zeros((3, 12)), np.zeros((3, 12)), np.array([1.0, -1.0])
     for j in range(laws.k.size):
         k, kr, phi = laws.k[j], laws.kr[j], vector(turn[j])
         inverse = rotations.left_tangent_inverse(phi)
         for side in range(2):
             H, arm = matrix(at.H[j, side]), matvec(matrix(at.R[j, side]), vector(laws.arm[j, side]))
             of_spin = inverse if side == 0 else transpose(inverse)  # T_L^-1 exp(phi) is the transpose of T_L^-1
-            _put(moved, 6 * side, signs[side], isotropic(1.0))
-            _put(moved, 6 * side + 3, -signs[side], matmul(skew(arm), H))
-            _put(turned, 6 * side + 3, signs[side], matmul(of_spin, H))
+            _write_columns(gap_by, 6 * side, signs[side], isotropic(1.0))
+            _write_columns(gap_by, 6 * side + 3, -signs[side], matmul(skew(arm), H))
+            _write_columns(turn_by, 6 * side + 3, signs[side], matmul(of_spin, H))
             force, moment = scale(signs[side] * k, vector(gap[j])), scale(signs[side] * kr, phi)
             both = add(cross(arm, force), moment)
             lever = moment_stiffness(matrix(at.Rn[j, side]), vector(at.Theta[j, side]), both)
@@ -296,19 +296,19 @@ def add_tangent(K: Array, weight: float, laws: Laws, at: JointPlaces, share: flo
         for row in range(12):
             for column in range(12):
                 for i in range(3):
-                    K[j, row, column] += weight * k * moved[i, row] * moved[i, column]
+                    K[j, row, column] += weight * k * gap_by[i, row] * gap_by[i, column]
         if kr > 0.0:
             for side in range(2):
                 H = matrix(at.H[j, side])
                 for row in range(3):
                     for column in range(12):
                         for i in range(3):
-                            share = signs[side] * H[i][row] * turned[i, column]
+                            share = signs[side] * H[i][row] * turn_by[i, column]
                             K[j, 6 * side + 3 + row, column] += weight * kr * share
 
 
 @njit
-def _put(out: Array, first: int, sign: float, values: Mat) -> None:
+def _write_columns(out: Array, first: int, sign: float, values: Mat) -> None:
     """Write sign times a matrix to the columns from `first` on."""
     for i in range(3):
         for column in range(3):

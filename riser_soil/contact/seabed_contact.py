@@ -112,9 +112,9 @@ class SeabedContact(CompiledPart, RiserContact):
         """Results at an accepted state in one vector, in the order of `ContactResults`."""
         if self.active:
             self.find(state)
-            if self._written_trial != self._alone.found:
+            if self._written_trial != self._alone.evaluated_at:
                 self._write_results()
-                self._written_trial = self._alone.found
+                self._written_trial = self._alone.evaluated_at
         return self._results_vector.copy()
 
     def _results(self, state: State) -> ContactResults:

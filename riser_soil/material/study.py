@@ -44,7 +44,7 @@ def study(scene: Scene, folder: Path, path: Path | None = None, depth: float | N
     heading = f"{SIGNED}{kind} at a depth of {z:g} m, {strain_path.source}; {STRAINS[k]} and {STRESSES[k]} are drawn"
     remembered = memory(point)
     tables = {CURVE: _curve_columns(curve), CYCLES: _cycle_columns(cycles), MEMORY: table_columns(remembered)}
-    _leave(folder, heading, tables)
+    _write_files(folder, heading, tables)
     return "\n".join(
         [*_summary_lines(soil, z, strain_path, curve, cycles), *in_words(remembered), f"written: {_NAMES} in {folder}"]
     )
@@ -84,7 +84,7 @@ def _own(file: Path) -> bool:
         return SIGNED.strip("# ").encode() in opened.read(2000)
 
 
-def _leave(folder: Path, heading: str, tables: dict[str, dict[str, Array]]) -> None:
+def _write_files(folder: Path, heading: str, tables: dict[str, dict[str, Array]]) -> None:
     """Write all files, none of them by halves."""
     from riser_soil.plots.soil_curves import draw
 

@@ -203,8 +203,8 @@ def _vary(
     stretch, spin = u[0], u[1] / at.length
     dN, dm1, dm2 = _elastic_variation(D, at, N, stretch, w1 - spin, w2 - spin)
     change = nodal_forces(at, dN, dm1, dm2)
-    moved = configuration_variation(at, force, stretch, spin)
-    total = (change.force[0] + moved[0], change.force[1] + moved[1])
+    geometric = configuration_variation(at, force, stretch, spin)
+    total = (change.force[0] + geometric[0], change.force[1] + geometric[1])
     return PlanarNodalForces(total, change.moment1, change.moment2)
 
 

@@ -246,8 +246,8 @@ def forces_change(
     pulled = add(
         chord_force(load, length, at.end1.angles, at.end2.angles), chord_force(response.load, length, m.da, m.db)
     )
-    moved = SpatialNodalForces(add(pulled, lengthen(length, response.forces, m.stretch)), STILL, STILL)
-    return plus(plus(stressed, moved), turn(response.forces, m.spin))
+    geometric = SpatialNodalForces(add(pulled, lengthen(length, response.forces, m.stretch)), STILL, STILL)
+    return plus(plus(stressed, geometric), turn(response.forces, m.spin))
 
 
 @njit

@@ -145,11 +145,11 @@ class InnerFlow(CompiledPart):
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         if (start, end) != self._times:
-            self._put(start, self._data.then)
-            self._put(end, self._data.now)
+            self._write_matrices(start, self._data.then)
+            self._write_matrices(end, self._data.now)
             self._times = start, end
 
-    def _put(self, t: float, out: FlowMatrices) -> None:
+    def _write_matrices(self, t: float, out: FlowMatrices) -> None:
         """Write the matrices at a time [s]."""
         for values, even in zip(out, self._even, strict=True):
             values[:] = even
@@ -214,16 +214,16 @@ def _add_tangent(part: ContentsData, at: Configuration, maps: Maps, weights: Wei
 
 @add_energy.of(ContentsData)
 def _add_energy(part: ContentsData, at: Configuration, energy: Array) -> None:
-    moved = np.zeros(at.rate.shape)
-    add_weighed(part.now.mass, at.rate, moved, at.D)
-    energy[0] += 0.5 * _product(moved, at.rate)
+    momentum = np.zeros(at.rate.shape)
+    add_weighed(part.now.mass, at.rate, momentum, at.D)
+    energy[0] += 0.5 * _product(momentum, at.rate)
 
 
 @add_work.of(ContentsData)
 def _add_work(part: ContentsData, first: Configuration, last: Configuration, work: Array) -> None:
     """External is the work against the mean force of the step, and the change of kinetic energy by that of the mass."""
     shape = last.q.shape
-    force, mean, moved = np.zeros(shape), np.zeros(shape), np.zeros(shape)
+    force, mean, momentum = np.zeros(shape), np.zeros(shape), np.zeros(shape)
     _add_force(part.then, part.up, first, force)
     _add_force(part.now, part.up, last, force)
     for e in range(shape[0]):
@@ -231,11 +231,11 @@ def _add_work(part: ContentsData, first: Configuration, last: Configuration, wor
             for i in range(shape[2]):
                 work[1] -= 0.5 * force[e, k, i] * (last.q[e, k, i] - first.q[e, k, i])
                 mean[e, k, i] = 0.5 * (first.rate[e, k, i] + last.rate[e, k, i])
-    add_weighed(part.now.mass, mean, moved, last.D)
-    changed = 0.5 * _product(moved, mean)
-    moved[:] = 0.0
-    add_weighed(part.then.mass, mean, moved, last.D)
-    changed -= 0.5 * _product(moved, mean)
+    add_weighed(part.now.mass, mean, momentum, last.D)
+    changed = 0.5 * _product(momentum, mean)
+    momentum[:] = 0.0
+    add_weighed(part.then.mass, mean, momentum, last.D)
+    changed -= 0.5 * _product(momentum, mean)
     work[1] += changed
     work[2] += changed
 

@@ -78,8 +78,8 @@ def _vary(
 ) -> PlanarNodalForces:
     dN, dm1, dm2 = _stress_change(D, at, N, rates, m, _rates_change(at, rates, m, shift_v))
     change = nodal_forces(at, dN, dm1, dm2)
-    moved = configuration_variation(at, force, m.stretch, m.spin)
-    total = (change.force[0] + moved[0], change.force[1] + moved[1])
+    geometric = configuration_variation(at, force, m.stretch, m.spin)
+    total = (change.force[0] + geometric[0], change.force[1] + geometric[1])
     return PlanarNodalForces(total, change.moment1, change.moment2)
 
 

@@ -181,9 +181,9 @@ def _motion_in_axes(motion: Array, origin: Array, basis: Array, start: Array) ->
     """Displacement, velocity and acceleration (3, d) in the axes of a line: of a motion (3, 3), its place first, from
     where the node is, `start` (d,).
     """
-    moved = motion @ basis
-    moved[0] -= origin @ basis + start
-    return np.asarray(moved)
+    rows = motion @ basis
+    rows[0] -= origin @ basis + start
+    return np.asarray(rows)
 
 
 STILL = 1e-9  # of the line's length, or a radian: what moves less does not move

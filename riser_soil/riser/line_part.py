@@ -152,7 +152,7 @@ class LineParts:
     """Parts of one line that have kernels, evaluated together: a single one, or all that act on it.
 
     name: the line's; parts: in the order in which they are evaluated; data: their kernel data. forces: their residuals
-    as evaluated last, in the configuration of count `found`. accepted: whether the states are accepted ones, at
+    as evaluated last, in the configuration of count `evaluated_at`. accepted: whether the states are accepted ones, at
     which the line is placed once for all; but for work, which needs the one where the step begins.
     """
 
@@ -162,7 +162,7 @@ class LineParts:
         self._trials = line.once(LineTrials)
         self._placed = self._trials.then if accepted else self._trials.now
         self._kernels = BoundParts(self._placed.at, self.data)
-        self.forces, self.found = self._kernels.forces, -1
+        self.forces, self.evaluated_at = self._kernels.forces, -1
         self._renewed = [part for part in parts if type(part).renew_kernel_data is not CompiledPart.renew_kernel_data]
         self._first = [each for part in parts for each in part.reads if each not in parts]
         self._after_forces = any(part.after_forces for part in parts)
@@ -190,13 +190,13 @@ class LineParts:
     def find(self, state: State) -> LineForces:
         """Residuals at a trial state, as they act on elements and on nodes."""
         self.go_to(state)
-        if self.found != self._placed.count:
+        if self.evaluated_at != self._placed.count:
             self._evaluate()
         return self.forces
 
     def _evaluate(self) -> None:
         self._write_forces()
-        self.found = self._placed.count
+        self.evaluated_at = self._placed.count
 
     def residual(self, state: State, forces: Forces) -> None:
         """Add the parts' residuals at a trial state."""

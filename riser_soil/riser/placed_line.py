@@ -74,10 +74,10 @@ class PlacedLine:
         self._base.update()
         u = state.u[line.part]
         moves, (v, a) = bool(u.any()), self._rates
-        stays = line.x is self._from and not (moves or self._moved)
-        if not (stays and state.v is v and (velocities_alone or state.a is a)):
+        unmoved = line.x is self._from and not (moves or self._moved)
+        if not (unmoved and state.v is v and (velocities_alone or state.a is a)):
             self._v[:], self._a[:], self._rates = state.v[line.part], state.a[line.part], (state.v, state.a)
-            if stays:
+            if unmoved:
                 self.trial.put_rates()
             else:
                 self._u[:] = u
@@ -86,11 +86,11 @@ class PlacedLine:
         self.count += 1
 
     def forget(self) -> None:
-        """Count it as placed anew when it is asked for next."""
+        """Place it anew next time, even at the same state."""
         self._state = None
 
     def differentiate(self, weights: Weights) -> None:
-        """Find the maps at the state."""
+        """Write the maps of the tangent at the state."""
         if self.trial.weigh(weights) or self._mapped != self.count:
             self.trial.write_maps()
             self._mapped = self.count

@@ -161,7 +161,7 @@ class CondensedSoil:
         self._undisturbed = gathered(self._owners)
         self._loaded: Array = np.zeros(top.size)
         self._wanted: BoolArray = np.zeros(len(top.points), dtype=bool)
-        self._met: IntArray = np.empty(0, dtype=np.int64)
+        self._newly_loaded: IntArray = np.empty(0, dtype=np.int64)
         self._recovered = True
 
     def blocks(self) -> dict[str, MatrixBlock]:
@@ -170,7 +170,7 @@ class CondensedSoil:
 
     def residual(self, state: State, forces: Forces) -> None:
         own = self.top.own(forces.end)
-        self._met = np.unique(self.top.unreached[own[self.top.unreached] != 0.0] // 3)
+        self._newly_loaded = np.unique(self.top.unreached[own[self.top.unreached] != 0.0] // 3)
         own[self.top.reached.dofs] += self.top.forces(state)
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
@@ -201,21 +201,21 @@ class CondensedSoil:
 
     @property
     def outgrown(self) -> bool:
-        return self._met.size > 0 or self._spare(len(self.top.reached.nodes))
+        return self._newly_loaded.size > 0 or self._spare(len(self.top.reached.nodes))
 
     def rebuild(self, state: State) -> None:
-        """Reach all that bears a force or has met one in the step so far, and what was reached as long as that is not
-        much more.
+        """Reach the nodes that bear a force, or have come to bear one in the step so far, and those reached before, as
+        long as these are not many more.
         """
-        self._wanted[self._met] = True
-        self._met = np.empty(0, dtype=np.int64)
+        self._wanted[self._newly_loaded] = True
+        self._newly_loaded = np.empty(0, dtype=np.int64)
         wanted = np.flatnonzero(self._wanted)
         both = np.union1d(wanted, self.top.reached.nodes)
         self.top.reach(wanted if self._spare(len(both)) else both)
 
-    def meet(self, nodes: IntArray) -> None:
-        """Take note of nodes that are not reached and bear a force in the step so far."""
-        self._met = nodes
+    def note_newly_loaded(self, nodes: IntArray) -> None:
+        """Note nodes that are not reached, and have come to bear a force in the step so far."""
+        self._newly_loaded = nodes
 
     def _spare(self, nodes: int) -> bool:
         """Whether so many are too many to be reached."""

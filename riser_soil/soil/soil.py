@@ -93,7 +93,7 @@ class Soil:
         initial = self._ground.stress(depth)
         return initial, self._ground.weight.at(depth), self._ground.law(depth, initial)
 
-    def _take_material(self) -> None:
+    def _renew_material(self) -> None:
         self._initial, self._unit_weight, self.law = self._material()
 
     def blocks(self) -> dict[str, MatrixBlock]:
@@ -243,7 +243,7 @@ class Soil:
         self._move_to(before, after, np.ones(len(number), dtype=bool) if made is None else made[number])
         if len(top):
             moved = points[top] - self.mesh.points[top]
-            self.surface.take(self.surface.sign.reshape(-1, 3) * moved)
+            self.surface.move_to(self.surface.sign.reshape(-1, 3) * moved)
         self._stored = self._stores(self._law_state)
 
     def _move_to(self, before: Array, after: Array, made: BoolArray) -> None:
@@ -257,7 +257,7 @@ class Soil:
         self._mesh_at[new] = after[self.cells.nodes[new]]
         self.cells.make_anew(np.flatnonzero(new), self._mesh_at[new])
         self._volumes[new_points] = self.cells.volumes.ravel()[new_points]
-        self._take_material()
+        self._renew_material()
         self._load, self._last = self._initial_reaction + self._weight(), None
         update = self.law.update(np.zeros((len(history), 6)), self._balanced(history), dt=0.0)
         for after_move, before_move in zip(update, self._law_state._replace(tangent=update.tangent), strict=True):
@@ -374,7 +374,7 @@ class Soil:
             self._depth, self._volumes = saved["depth"].copy(), saved["volumes"].copy()
             self._in_balance = saved["in_balance"].copy()
             self._mesh_at = saved["mesh_at"].copy()
-            self._take_material()
+            self._renew_material()
             self._load = self._initial_reaction + self._weight()
 
 

@@ -77,7 +77,7 @@ class SoilTop:
             self.placed = self.committed
         self._placed_for_step = False
 
-    def take(self, displacement: Array) -> None:
+    def move_to(self, displacement: Array) -> None:
         """Go on with another accepted displacement (np, 3) [m]."""
         self.committed = self.placed = displacement
 

@@ -31,7 +31,7 @@ class ElasticShare:
     def reset(self) -> None:
         """None, as where a step begins."""
         self.length, self.stagnant = 1.0, 0
-        self._give(0.0)
+        self._set(0.0)
 
     def adapt(self, norm: float, before: float) -> None:
         """For the tangent after an iteration, by the norms of the residual then and before."""
@@ -39,16 +39,16 @@ class ElasticShare:
             return
         self.stagnant = self.stagnant + 1 if self._share == 1.0 and CRAWLS * before < norm <= before else 0
         if self.length < SHORT or norm > before:
-            self._give(min(1.0, max(MORE * self._share, FIRST_SHARE)))
+            self._set(min(1.0, max(MORE * self._share, FIRST_SHARE)))
         elif norm < FALLEN * before:
-            self._give(self._share / MORE if self._share > FIRST_SHARE else 0.0)
+            self._set(self._share / MORE if self._share > FIRST_SHARE else 0.0)
 
     @property
     def in_vain(self) -> bool:
         """Whether no number of iterations would do."""
         return self.stagnant >= IN_A_ROW
 
-    def _give(self, share: float) -> None:
+    def _set(self, share: float) -> None:
         if share != self._share:
             self._share = share
             for part in self._parts:

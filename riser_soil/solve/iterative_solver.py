@@ -63,7 +63,7 @@ class IterativeSolver(PythonContext, LinearSolver):
         with defaults(MULTIGRID):
             if self._corrections is None:
                 self._corrections = _Corrections(matrix, self._near(matrix), self._soil(matrix))
-            self._corrections.take(matrix)
+            self._corrections.update(matrix)
 
     def apply(self, pc: PETSc.PC, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Called by PETSc: y, about the solution of the system for x."""
@@ -122,12 +122,12 @@ class _Corrections:
         self._rows = matrix.createSubMatrix(near.rows, self._all)
         self._residual, self._near_rows = self._columns.createVecLeft(), self._rows.createVecLeft()
 
-    def take(self, matrix: PETSc.Mat) -> None:
-        """Take the values of a matrix of the same pattern."""
+    def update(self, matrix: PETSc.Mat) -> None:
+        """Use the values of another matrix of the same pattern."""
         matrix.createSubMatrix(self._all, self._near.rows, self._columns)
         matrix.createSubMatrix(self._near.rows, self._all, self._rows)
         for correction in (self._near, self._soil):
-            correction.take(matrix)
+            correction.update(matrix)
 
     def apply(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """y, about the solution of the system for x: each correction is for the residual after the ones before."""
@@ -162,8 +162,8 @@ class _Correction:
         self._solver = solver
         solver.setOperators(self.matrix)
 
-    def take(self, matrix: PETSc.Mat) -> None:
-        """Take the values of a matrix of the same pattern."""
+    def update(self, matrix: PETSc.Mat) -> None:
+        """Use the values of another matrix of the same pattern."""
         matrix.createSubMatrix(self.rows, self.rows, self.matrix)
         self._solver.setUp()
 

@@ -98,19 +98,19 @@ class KeptFactors(PythonContext, LinearSolver):
         """A matrix whose pattern was factorised before reuses the symbolic factorisation."""
         if self._factored is None or self._outgrown:
             self.forget()
-            self._keep(matrix.copy())
+            self._prepare(matrix.copy())
         else:
             matrix.copy(self._factored, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
         assert self._factors is not None
         self._factors.setUp()
         while self._workspace.grows_after(self._factors):
             self.forget()
-            self._keep(matrix.copy())
+            self._prepare(matrix.copy())
             self._factors.setUp()
         self._weigh()
         self.factorisations += 1
 
-    def _keep(self, factored: PETSc.Mat) -> None:
+    def _prepare(self, factored: PETSc.Mat) -> None:
         """Get ready for the factors of a matrix, which are made when they are first needed."""
         self._factored, self._outgrown = factored, False
         self._factors = PETSc.PC().create(self._comm)
@@ -152,7 +152,7 @@ class KeptFactors(PythonContext, LinearSolver):
             return
         rows = (len(saved["starts"]) - 1, PETSc.DETERMINE)
         csr = tuple(saved[name] for name in ("starts", "columns", "values"))
-        self._keep(PETSc.Mat().createAIJ((rows, rows), csr=csr, comm=self._comm))
+        self._prepare(PETSc.Mat().createAIJ((rows, rows), csr=csr, comm=self._comm))
         self.worth, self._spent, self._solves = (saved[name].item() for name in ("worth", "spent", "solves"))
         self._outgrown, self._stale = bool(saved["outgrown"]), False
 

@@ -217,7 +217,7 @@ class SoilBorder(Coupling):
     def widen(self) -> None:
         """Reach and watch what the last trial touched."""
         if self._touching.touched.met.any():
-            self._soil.meet(np.flatnonzero(self._touching.touched.met))
+            self._soil.note_newly_loaded(np.flatnonzero(self._touching.touched.met))
             self._soil.rebuild(self._touching.contact.accepted)
         self._watch(tried=True)
 
