@@ -231,7 +231,7 @@ def _add_tangent_over_step(
 
 @add_energy.of(MidpointInertiaData)
 def _add_kinetic_over_step(part: MidpointInertiaData, at: SpatialConfiguration, energy: Array) -> None:
-    """Where a step begins or ends."""
+    """Add the kinetic energy where a step begins or ends."""
     add_energy(part.instant, at, energy)
 
 

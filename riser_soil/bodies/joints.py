@@ -259,7 +259,7 @@ def energy_of(laws: Laws, at: JointPlaces, share: float) -> float:
 
 @njit
 def conjugate(laws: Laws, at: JointPlaces, share: float) -> Array:
-    """What is conjugate to the dofs of both nodes (m, 12)."""
+    """Forces (m, 12) conjugate to the dofs of both nodes."""
     gap, turn, out = gaps(laws, at, share), turns(laws, at, share), np.empty((laws.k.size, 12))
     for j in range(laws.k.size):
         for side in range(2):

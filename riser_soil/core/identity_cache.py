@@ -23,7 +23,7 @@ class IdentityCache(Generic[Of, Made]):
         self._latest: deque[tuple[Of, Made]] = deque(maxlen=latest)
 
     def made_of(self, of: Of, make: Callable[[Of], Made]) -> Made:
-        """What is kept of the object, or is made of it now."""
+        """The value of an object: the cached one, or a new one by `make`."""
         for known, made in self._latest:
             if known is of:
                 return made

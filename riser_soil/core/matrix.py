@@ -138,7 +138,7 @@ Patterns = dict[str, BlockPattern]
 
 
 def _pattern(numbering: Numbering, block: MatrixBlock, known: BlockPattern | None) -> BlockPattern:
-    """That of a batch, which may be the one that is known."""
+    """Pattern of a batch of blocks: the known one if it is the same."""
     rows, cols = (_in_system(numbering, dofs) for dofs in (block.rows, block.cols))
     given = rows, cols, _is_minus(numbering, block), numbering.free
     return known if known is not None and known.is_of(*given) else BlockPattern(*given)

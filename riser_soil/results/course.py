@@ -50,7 +50,7 @@ def follow(course: Course, times: Array, rows: Array) -> None:
 
 @njit
 def _follow(course: Course, t: float, after: Array) -> None:
-    """What one step ends with."""
+    """Take in the figures (n,) after one step."""
     n = course.values.size
     before, last_dt = course.times[0], course.times[1]
     dt = t - before
@@ -90,7 +90,7 @@ def _follow_peak(at: Course, row: int, i: int, value: float, last: float, bend: 
 
 @njit
 def _keep(at: Course, row: int, i: int) -> None:
-    """What is known of the extreme, where it is followed."""
+    """Store the error and the steps of the extreme, where it is the leading one."""
     k = row, i
     if at.leads[k]:
         at.error[k], at.steps[k] = SHARE * at.around[k], at.longest[k]

@@ -77,7 +77,7 @@ class InstantReader:
 
     def _ground(self, state: State) -> dict[str, Array]:
         wanted = self._fields if self._riser.contacts else ()
-        values = {} if self._sections is None else self._sections.look(state)
+        values = {} if self._sections is None else self._sections.values(state)
         if "slip" in wanted:
             values["slip"] = self._slip()
         if "soil_settlement" in wanted and self._riser.soil is not None:

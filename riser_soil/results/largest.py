@@ -97,7 +97,7 @@ class LargestAlong:
 
 
 class Range:
-    """Least and largest values so far of n figures, see `Largest`."""
+    """Least and largest values so far of n figures, with their times and what belongs to them."""
 
     def __init__(self, size: int, beside: int = 0) -> None:
         self._least, self._most = Largest(size, beside), Largest(size, beside)
@@ -113,7 +113,7 @@ class Range:
 
     @property
     def beside(self) -> dict[str, Array]:
-        """What belongs to the least and the largest values, each (m, n)."""
+        """Values (m, n) that belong to the least and to the largest ones."""
         return {"min": self._least.beside, "max": self._most.beside}
 
     def state(self) -> Saved:

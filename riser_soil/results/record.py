@@ -217,7 +217,7 @@ class Recorder:
 
     @property
     def flush_is_due(self) -> bool:
-        """Whether what has been accepted is to go to disk now."""
+        """Whether accepted steps are to be written to disk now."""
         return time.monotonic() > self._next_flush
 
     def time_at(self, t: float) -> float:

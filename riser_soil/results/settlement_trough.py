@@ -72,7 +72,7 @@ class TroughSections:
                 self._arc[n], self._position[n] = arc, position
                 self._direction[n] = np.cross([0.0, 0.0, 1.0], level / size)
 
-    def look(self, state: State) -> dict[str, Array]:
+    def values(self, state: State) -> dict[str, Array]:
         """Places of the sections and settlement in them at a state; nan in one without a place, and beside the soil."""
         across = self._offsets[None, :, None] * self._direction[:, None, :2]
         xy = self._position[:, None, :2] + across

@@ -211,7 +211,7 @@ def bow_load(axes: Mat, L: float, w: Vec) -> BowLoad:
 
 @njit
 def turned(load: BowLoad, spin: Vec) -> BowLoad:
-    """How a load that is fixed in space changes as the frame spins."""
+    """Change of a load that is fixed in space, in axes that spin."""
     return BowLoad(load.twelfth, cross(load.w, spin))
 
 

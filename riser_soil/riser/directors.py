@@ -42,7 +42,7 @@ class PlanarOrientation:
 
     @property
     def turned(self) -> Array:
-        """What the dofs have turned by (nn, 1): the angles."""
+        """Angles (nn, 1) to which the rotation dofs have turned the nodes."""
         return self.angle[:, None]
 
     def motion(self, v: Array, a: Array) -> tuple[Array, Array]:

@@ -168,7 +168,7 @@ class LineEnds:
             self._supports = self._supports | turned
 
     def state(self) -> Saved:
-        """Where the supports have turned to, and from where."""
+        """Orientations of the supports, now and at the stage's beginning."""
         supports, bases = (np.stack([at[node] for node, _ in self._ends]) for at in (self._supports, self._bases))
         return {"supports": supports, "bases": bases}
 

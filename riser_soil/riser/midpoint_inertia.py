@@ -195,7 +195,7 @@ def _add_tangent(part: MidpointMass, at: Configuration, maps: Maps, weights: Wei
 
 @add_energy.of(MidpointMass)
 def _add_energy(part: MidpointMass, at: Configuration, energy: Array) -> None:
-    """Where a step begins or ends."""
+    """Add the kinetic energy where a step begins or ends."""
     write_rates_at_end(at, part.tangents, 0, part.at_ends)
     hermite.write_interleaved(at.v, part.at_ends, part.q, at.D)
     add_kinetic(part.mass, at, part.q, energy)
@@ -274,7 +274,7 @@ def _add_rotary_tangent(
 
 @add_energy.of(MidpointRotaryMass)
 def _add_rotary_energy(part: MidpointRotaryMass, at: Configuration, energy: Array) -> None:
-    """Where a step begins or ends."""
+    """Add the kinetic energy where a step begins or ends."""
     for m in range(part.masses.shape[0]):
         write_rates_at_end(at, part.directors, m, part.at_ends)
         for e in range(part.at_ends.shape[0]):

@@ -45,7 +45,7 @@ def heap(chain: BarChain, h: float, surface: float = np.inf) -> tuple[Array, Cab
 
 
 def _heap(chain: BarChain, h: float) -> tuple[Array, CableBalance] | None:
-    """What hangs straight down to z = 0."""
+    """The balance of a line that hangs straight down to a heap at z = 0; None where it would not reach it."""
     first = _hung(chain.l0, chain.W, chain.EA, chain.z0)
     last = _hung(chain.l0[::-1], chain.W[::-1], chain.EA[::-1], chain.z1)
     lying = chain.l0.size - first.V.size - last.V.size

@@ -301,7 +301,7 @@ def stress(D: ElementStiffness, total: Strain, elastic: Strain) -> Stress:
 
 @njit
 def _twisting_moment(D: ElementStiffness, k: Pair, e: Pair) -> Pair:
-    """What P takes off the moment of each station."""
+    """Share of the torque's rate P in the moment of each station, with the other sign."""
     P, h, half = _torque_rate(k, e, D), _share(k, D), 0.5 * _twist_compliance(D)
     (Py, Pz), (hy, hz) = _torque_rate_slopes(k, e, D), _share_slopes(k, D, h)
     return half * P * (h * Py + 0.5 * P * hy), half * P * (h * Pz + 0.5 * P * hz)

@@ -218,7 +218,7 @@ class CondensedSoil:
         self._newly_loaded = nodes
 
     def _spare(self, nodes: int) -> bool:
-        """Whether so many are too many to be reached."""
+        """Whether so many reached nodes are too many beside those that bear a force."""
         return nodes > SPARE * np.count_nonzero(self._wanted) + FEW
 
     def recover(self) -> Soil:

@@ -148,7 +148,7 @@ def _apart(grid: DistributedMesh, points: Array) -> Array:
 
 
 def _split(gathered: list[tuple[Array, Array, Array]], sample: Sample) -> list[tuple[Array, ...]]:
-    """What each rank gets."""
+    """The samples of each rank, from the places, rows and targets of all."""
     places, values, targets = (np.concatenate(each) for each in zip(*gathered, strict=True))
     ends = np.cumsum([len(after) for _, _, after in gathered])[:-1]
     return list(zip(*(np.split(column, ends) for column in sample(places, values, targets)), strict=True))

@@ -57,7 +57,7 @@ class Formula(Protocol):
 
     @property
     def by_rate(self) -> bool:
-        """Whether the answer hangs on the time that an increment takes."""
+        """Whether the stress depends on the time that an increment takes."""
         ...
 
     @property

@@ -29,7 +29,7 @@ WRITE = 'write from: "my_clay.py:CamClay", a file beside the scene and its class
 
 
 class LawError(Exception):
-    """What a law of one's own does wrong, in one line."""
+    """Message of one line about a fault of a law of one's own."""
 
 
 class LawSource(NamedTuple):

@@ -225,7 +225,7 @@ class Soil:
         return out
 
     def inadmissible(self, state: State) -> str:
-        """Where a step would fold a cell; collective."""
+        """Message about a cell that a step would fold, "" for none; collective."""
         moved = self.points + self.field.own(state.u).reshape(-1, 3)
         skew = skewness(self.grid.family, moved, self.cells.nodes) if self.moves else np.ones(1)
         worst = int(skew.argmin()) if skew.size else 0

@@ -45,7 +45,7 @@ class ElasticShare:
 
     @property
     def in_vain(self) -> bool:
-        """Whether no number of iterations would do."""
+        """Whether the residual stagnates under the whole elastic tangent, so that more iterations are in vain."""
         return self.stagnant >= IN_A_ROW
 
     def _set(self, share: float) -> None:

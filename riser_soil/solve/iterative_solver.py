@@ -97,7 +97,7 @@ class IterativeSolver(PythonContext, LinearSolver):
         return soil
 
     def failed(self, ksp: PETSc.KSP) -> tuple[str, bool]:
-        """How far the iterations came that did not converge."""
+        """Message about iterations that did not converge, with their number and residual."""
         self.forget()
         return (
             f"the iterative linear solver has not converged in {ksp.getIterationNumber()} iterations: a residual of "

@@ -41,11 +41,11 @@ class LineResults:
         self._solved = self._committed = None
 
     def solved(self, state: State) -> None:
-        """The loop has solved for a state."""
+        """Note the state that the line solver has solved for."""
         self._solved = state if self._smooth else None
 
     def commit(self) -> None:
-        """What the loop has solved for is accepted."""
+        """Note that this state is accepted."""
         self._committed = self._line.x
 
     def element_residual(self, state: State) -> Array | None:

@@ -150,7 +150,7 @@ class PackedLine:
 
 
 def _by_method(part: CompiledPart) -> bool:
-    """Whether a part without a kernel for it says what it turns over."""
+    """Whether a part computes its work by a method of its own, not by a kernel."""
     return overrides(part, "work") and type(part).work is not CompiledPart.work
 
 

@@ -201,13 +201,13 @@ class SoilBorder(Coupling):
         self._prescribe_anew()
 
     def _prescribe_anew(self) -> None:
-        """What is not reached does not move by itself."""
+        """Prescribe the dofs that are not reached now, as these follow the others."""
         if self._prescribed is not self._top.reached:
             self._system.renew_prescribed()
             self._prescribed = self._top.reached
 
     def leave_to_parts(self) -> bool:
-        """Newton's method needs a matrix for what is reached and may touch now."""
+        """Give the matrix of Newton's method over the parts the dofs that are reached and the pairs that may touch."""
         self._touching.contact.rebuild(self._touching.contact.accepted)
         return True
 

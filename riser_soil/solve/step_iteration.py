@@ -343,7 +343,7 @@ class StepIteration:
         return BELOW * self._tolerated
 
     def _reason(self, why: str) -> str:
-        """Why the step did not converge, with where it is out of balance."""
+        """Message why the step did not converge, with the place where it is most out of balance."""
         return failure_text(why, self._convergence.norms, self._norm.largest(self._f))
 
     def state(self) -> Saved:

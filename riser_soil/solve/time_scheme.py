@@ -241,7 +241,7 @@ class GeneralizedAlpha:
 
 @njit
 def _past(bulk: float, alpha_m: float, inertia: Array, alpha_f: float, force: Array) -> Array:
-    """What the forces at the start of a step add to its residual."""
+    """Share of the forces at a step's start in its residual."""
     out = np.empty(force.size)
     for i in range(force.size):
         out[i] = bulk * (alpha_m * inertia[i] + alpha_f * force[i])

@@ -198,21 +198,21 @@ def test_sections_lie_across_the_riser_and_stay(kind: str) -> None:
     made = pipe_on_surface(sagging(angle=0.3), surface)
     offsets = (-9.0, -0.2, 0.0, 0.3)
     sections = TroughSections(made.line, made.contact, (made.line.arc[2], made.line.arc[3]), offsets)
-    assert np.isnan(sections.look(made.state())["settlement_across"]).all()
+    assert np.isnan(sections.values(made.state())["settlement_across"]).all()
     sections.lay(*made.placed(), math.nan)
     assert sections.laid
-    look = sections.look(made.state())
-    np.testing.assert_array_equal(look["section_arc"], made.line.arc[[2, 3]])
-    np.testing.assert_allclose(look["section_position"], made.line.positions3(made.state())[[2, 3]], atol=1e-12)
+    values = sections.values(made.state())
+    np.testing.assert_array_equal(values["section_arc"], made.line.arc[[2, 3]])
+    np.testing.assert_allclose(values["section_position"], made.line.positions3(made.state())[[2, 3]], atol=1e-12)
     across = np.array([-np.sin(0.3), np.cos(0.3), 0.0])
-    np.testing.assert_allclose(look["section_direction"], [across, across], atol=1e-12)
-    x, y, _ = np.moveaxis(look["section_position"][:, None] + np.array(offsets)[None, :, None] * across, 2, 0)
+    np.testing.assert_allclose(values["section_direction"], [across, across], atol=1e-12)
+    x, y, _ = np.moveaxis(values["section_position"][:, None] + np.array(offsets)[None, :, None] * across, 2, 0)
     expected = 0.01 + 0.003 * x - 0.005 * y
-    np.testing.assert_allclose(look["settlement_across"][:, 1:], expected[:, 1:], rtol=1e-9)
-    assert np.isnan(look["settlement_across"][:, 0]).all(), "beside the soil"
+    np.testing.assert_allclose(values["settlement_across"][:, 1:], expected[:, 1:], rtol=1e-9)
+    assert np.isnan(values["settlement_across"][:, 0]).all(), "beside the soil"
     again = TroughSections(made.line, made.contact, (made.line.arc[0], made.line.arc[1]), offsets)
     again.restore(sections.state())
-    np.testing.assert_array_equal(again.look(made.state())["settlement_across"], look["settlement_across"])
+    np.testing.assert_array_equal(again.values(made.state())["settlement_across"], values["settlement_across"])
 
 
 def test_a_section_waits_for_the_touchdown_point() -> None:
@@ -221,4 +221,4 @@ def test_a_section_waits_for_the_touchdown_point() -> None:
     sections.lay(*made.placed(), math.nan)
     assert not sections.laid
     sections.lay(*made.placed(), 1.0)
-    assert sections.look(made.state())["section_arc"] == [1.0]
+    assert sections.values(made.state())["section_arc"] == [1.0]
