@@ -166,6 +166,9 @@ class SeabedFriction(CompiledPart):
     def _write_start(self) -> Bound:
         return bound(write_start, self._data, Packed(self._trials.now.at))
 
+    def bind(self) -> None:
+        _ = self._write_start
+
     def renew_kernel_data(self, start: float, end: float) -> None:
         if not self._begun:
             self._contact.find(State.at_rest(end, self.line.offset + self.line.size))
@@ -222,6 +225,10 @@ class CoulombFriction(SeabedFriction):
         put, slip = self._write_slip
         put()
         return slip.copy()
+
+    def bind(self) -> None:
+        super().bind()
+        _ = self._write_slip
 
     @cached_property
     def _write_slip(self) -> tuple[Bound, Array]:

@@ -85,6 +85,9 @@ class SeabedContact(CompiledPart, RiserContact):
         data: SeabedData = self._data
         return data
 
+    def bind(self) -> None:
+        _ = self._write_results, None if self.traits.gradual else self._landing
+
     @cached_property
     def _cover(self) -> Any:
         """Kernel data of what lies on the ground, None for nothing."""

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -173,6 +173,15 @@ class Contribution(Protocol):
 
     def energy(self, state: State) -> Energy:
         """This rank's share of the stored energy."""
+        ...
+
+
+@runtime_checkable
+class Compiled(Protocol):
+    """A contribution by kernels."""
+
+    def bind(self) -> None:
+        """Bind all of them: those that are missing are compiled together, as soon as one is called."""
         ...
 
 

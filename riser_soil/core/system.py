@@ -15,6 +15,7 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.matrix import Matrix, Patterns
 from riser_soil.core.numbering import Numbering
 from riser_soil.core.part import (
+    Compiled,
     Contribution,
     Energy,
     Field,
@@ -165,6 +166,12 @@ class System:
         since = time.perf_counter()
         self.matrix.assemble()
         self.clock.add("matrix", since)
+
+    def bind(self) -> None:
+        """Bind the kernels of all parts before one is called, so that those that are missing are compiled together."""
+        for each in self._together(self._active):
+            if isinstance(each, Compiled):
+                each.bind()
 
     def _together(self, parts: Sequence[Part]) -> Sequence[Contribution]:
         """Some of the parts, those of each line evaluated together."""

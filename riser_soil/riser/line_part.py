@@ -96,6 +96,9 @@ class CompiledPart(LinePart, ABC):
     def renew_kernel_data(self, start: float, end: float) -> None:
         """Write what depends on the time alone into the kernel data, for a step between two times [s]."""
 
+    def bind(self) -> None:
+        """Bind kernels of its own beside those of all parts, see `LineParts.bind`."""
+
     @property
     def reads(self) -> Sequence[CompiledPart]:
         """Parts of the line whose results its kernels read, so that these are evaluated first."""
@@ -168,6 +171,12 @@ class LineParts:
         self._after_forces = any(part.after_forces for part in parts)
         self._groups = {group for part in parts for group in part.traits.groups}
         self._write_forces, self._collect = in_turn(*self._kernels.find_forces()), self._kernels.collect()
+
+    def bind(self) -> None:
+        """Bind all kernels: those that are missing are compiled together, on all cores, as soon as one is called."""
+        _ = self._tangent, self._energy, self._work, self._keep, self._element_forces
+        for part in self.parts:
+            part.bind()
 
     def renew(self, start: float, end: float) -> None:
         """Write what depends on time into the kernel data, for a step between two times [s] by another solver."""
