@@ -31,12 +31,12 @@ from riser_soil.seabed.points import seabed_points
 
 
 class BodyContactData(NamedTuple):
-    """A `BodyContact`: points (n, 3) in body axes and length that each stands for [m].
+    """A `BodyContact`: points (n, 3) in body axes and length of pipe that each represents [m].
 
-    As found last: arms of the points from the body's origin and places [m], gradients of the distance from the ground,
-    each (n, 3), and its hessians (n, 3, 3); penetration, whether the law acts, force per length, slope and energy
-    stored (n,); places and energy where the step began; work (n,) of a law with a history in the step, (0,) of others.
-    Kernels, and which of them find what, as of `SeabedData`.
+    As evaluated last: arms of the points from the body's origin and places [m], gradients of the distance from the
+    ground, each (n, 3), and its hessians (n, 3, 3); penetration, whether the law acts, force per length, slope and
+    energy stored (n,); places and energy where the step began; work (n,) of a law with a history in the step, (0,) of
+    others. Kernels, and which of them do what, as in `SeabedData`.
     """
 
     points: Array
@@ -102,9 +102,9 @@ def _add_stored(part: BodyContactData, at: SpatialConfiguration, energy: Array) 
 
 @add_work.of(BodyContactData)
 def _add_lost(part: BodyContactData, first: SpatialConfiguration, last: SpatialConfiguration, work: Array) -> None:
-    """Dissipated is the work of the force at the end of the step less the change of the energy stored, as of
-    `SeabedContact`; what that force takes beyond the work of the law along the step is the time scheme's. Its work is
-    that of the increments, as in the equations of motion.
+    """Dissipated is the work of the force at the end of the step less the change of the energy stored, as for
+    `SeabedContact`; what that force extracts beyond the work of the law along the step is the time scheme's. Its work
+    is that of the increments, as in the equations of motion.
     """
     _place(part.points, posture(first), np.empty(part.arm.shape), part.began_at)
     call_span(part.kernels, part.find_before)
@@ -118,7 +118,7 @@ def _add_lost(part: BodyContactData, first: SpatialConfiguration, last: SpatialC
 
 @keep.of(BodyContactData)
 def _keep_history(part: BodyContactData, at: SpatialConfiguration) -> None:
-    """The law's history after the step."""
+    """Keep the law's history after the step."""
     call_span(part.kernels, part.keep)
 
 

@@ -38,7 +38,7 @@ class BodyFrictionData(NamedTuple):
     [N/m2].
 
     Where a step starts: places (n, 3) and directions along the ground (n, 3, 2); traction (n, 3) on the body per
-    length [N/m] and way slid (n,) [m]. resistance (n, 3): minus the traction found last, of points that touch.
+    length [N/m] and way slid (n,) [m]. resistance (n, 3): minus the traction as evaluated last, of points that touch.
     """
 
     contact: BodyContactData
@@ -72,7 +72,7 @@ def _mapped(part: BodyFrictionData, p: int) -> tuple[Pair, tuple[Pair, Pair], Pa
 
 @add_forces.of(BodyFrictionData)
 def _resist(part: BodyFrictionData, at: SpatialConfiguration, out: LineForces) -> None:
-    """After the forces of the contact that it belongs to."""
+    """Add friction; called after the forces of its contact."""
     here, contact = posture(at), part.contact
     for p in range(part.slid.size):
         if contact.acts[p]:
@@ -120,13 +120,13 @@ def _add_lost(part: BodyFrictionData, first: SpatialConfiguration, last: Spatial
 
 @keep.of(BodyFrictionData)
 def _keep_traction(part: BodyFrictionData, at: SpatialConfiguration) -> None:
-    """The traction, the way slid beyond the elastic mobilisation, and what the next step starts from."""
+    """Keep the traction, the way slid beyond the elastic mobilisation, and what the next step starts from."""
     contact = part.contact
     for p in range(part.slid.size):
         t, touches = vector(part.resistance[p]), contact.acts[p]
         if contact.force[p] > 0.0:
-            change = add(vector(part.traction[p]), t)
-            part.slid[p] += slip_at(read_along(part.along[p]), change, part.stiffness, _moved(part, p))
+            decrease = add(vector(part.traction[p]), t)
+            part.slid[p] += slip_at(read_along(part.along[p]), decrease, part.stiffness, _moved(part, p))
         write(scale(-1.0 if touches else 0.0, t), part.traction[p])
     write_start(part, at)
 
@@ -143,7 +143,7 @@ class BodyFriction(SeabedFriction):
     """Friction at the points of a `BodyContact`.
 
     mu: coefficient, > 0. stiffness: of the ground along itself, per length [N/m2], see `contact.mobilised_within`.
-    adhesion: what clay holds the body by at most.
+    adhesion: of clay, which limits friction.
     """
 
     name = "body friction"
@@ -159,9 +159,10 @@ class BodyFriction(SeabedFriction):
 
     def make_kernel_data(self) -> BodyFrictionData:
         n = len(self.contact.points)
-        given = self.contact.kernel_data(), self._mu, self._adhesion, float(self._stiffness)
+        contact = self.contact.kernel_data()
+        law = self._mu, self._adhesion, float(self._stiffness)
         position, traction, resistance = (np.zeros((n, 3)) for _ in range(3))
-        return BodyFrictionData(*given, position, np.zeros((n, 3, 2)), traction, self._slid, resistance)
+        return BodyFrictionData(contact, *law, position, np.zeros((n, 3, 2)), traction, self._slid, resistance)
 
     def force_on_body(self, state: State) -> Array:
         """Sum of the forces on the body (3,) [N], global axes; zero on a rank that does not evaluate it."""

@@ -15,7 +15,7 @@ from riser_soil.seabed.compiled_law import answer
 from riser_soil.seabed.law import NormalLaw
 from riser_soil.seabed.points import SeabedPoints
 
-#: How little of the force may be bent along the way, by its slopes and by its rise, for both ends to tell the work.
+#: How little of the force may be bent along the way, by its slopes and by its rise, for both ends to give the work.
 STEADY = 1e-3
 #: Panels of the way within the ground, where the laws are smooth, and of that above it, where suction has corners.
 WITHIN, ABOVE = 2, 4
@@ -44,8 +44,8 @@ def write_works(law: Any, reach: float, before: Array, after: Array, history: Ar
 
 
 def written_work(law: NormalLaw, here: SeabedPoints, began: SeabedPoints, work: Array) -> list[Bound]:
-    """What writes the law's work (n,) by one way between the penetrations where the step began and at its end; nothing
-    of a law without a history, see `work_at`.
+    """Kernels that write the law's work (n,) by one way between the penetrations where the step began and at its end;
+    none for a law without a history, see `work_at`.
     """
     if here.law.history.shape[1] == 0:
         return []
@@ -71,7 +71,9 @@ def work_at(law: Any, reach: float, before: float, after: float, history: Array,
 
 @njit
 def _between(law: Any, first: float, last: float, history: Array, workspace: Array, panels: int) -> float:
-    """By force and slope at both ends, where the force is all but straight between them; else by Gauss points."""
+    """Work per length [N] between two penetrations: by force and slope at both ends, where the force is all but
+    straight between them; else by Gauss points.
+    """
     if first == last:
         return 0.0
     (f, slope, _), (g, then, _) = answer(law, first, history, workspace), answer(law, last, history, workspace)

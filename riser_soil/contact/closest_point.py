@@ -1,7 +1,7 @@
 """The pipe's axis, and the place on it that is closest to a point.
 
-The axis is the cubic c(s) = Σ N_a(s) q_a of a beam element. A point that has come through to above the axis is taken to
-lie below it: the pipe pushes it down all the same.
+The axis is the cubic c(s) = Σ N_a(s) q_a of a beam element. A point that has come through to above the axis counts as
+lying below it: the pipe pushes it down all the same.
 """
 
 from __future__ import annotations

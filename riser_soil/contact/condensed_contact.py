@@ -19,8 +19,8 @@ SHARE = 0.25  # of the range around the pipe by which soil may move before what 
 class CondensedContact:
     """Contact with condensed soil, and friction if there is any: their kernels, bound to where they read and write.
 
-    parts: whose forces these are. deformed (np, 3): where the solver writes the top's points [m]. touched: what was
-    found last. slack: by which the soil may move before `look` is due [m].
+    parts: whose forces these are. deformed (np, 3): where the solver writes the top's points [m]. touched: outcome of
+    the last evaluation. slack: by which the soil may move before `look` is due [m].
     """
 
     def __init__(self, contact: SoilContact, friction: SoilFriction | None) -> None:
@@ -41,7 +41,8 @@ class CondensedContact:
         return self._packed[0].value
 
     def _renew(self, data: Any) -> None:
-        """Go on with kernel data of the contact; packing them takes as long as an iteration."""
+        """Go on with these kernel data of the contact; only what differs is packed, as that costs an iteration's time.
+        """
         renewed = [data]
         if self._friction is not None:
             renewed.append(self._friction.at_start(self._packed[1].value, data))
@@ -54,8 +55,7 @@ class CondensedContact:
         self._renew(self.contact.at_start(self._data))
 
     def look(self, tried: bool) -> IntArray:
-        """Find what may touch near the accepted place and, where asked for, near the last trial: the top's nodes (k,).
-        """
+        """Watch what may touch near the accepted place and, if `tried`, near the last trial's: the top's nodes (k,)."""
         places = [self.contact.place(self.contact.accepted), *([self.contact.place_in(self._data)] if tried else [])]
         pairs = self.contact.candidates(places, self.deformed)
         roomy = self.contact.with_room(self._data)
@@ -71,6 +71,6 @@ class CondensedContact:
         return [bound(add_contact_tangent, part, top, at, K, border) for part in self._packed]
 
     def end(self, state: State) -> None:
-        """Hand to the parts what was found last, at the end of a step."""
+        """Hand the last evaluation to the parts, at the end of a step."""
         for part, packed in zip(self.parts, self._packed, strict=True):
             part.adopt(state, packed.value)

@@ -1,4 +1,4 @@
-"""Base class of the riser's contacts with any ground, and what results tell of them."""
+"""Base class of the riser's contacts with any ground, and their results."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class RiserContact(LinePart, ABC):
 
     @abstractmethod
     def results(self, state: State) -> Array:
-        """All that results tell of it, see `ContactResults.within`; on the rank that evaluates contact."""
+        """All results in one vector, see `ContactResults.within`; on the rank that evaluates contact."""
 
     @abstractmethod
     def force_per_length(self, state: State) -> Array:
@@ -113,6 +113,6 @@ def size_of(nodes: int, points: int) -> int:
 
 @bound_by_type
 def write_results(part: tuple, at: Configuration, out: ContactResults) -> None:
-    """Write the results of a contact by its kernel data, see `part_kernels`, in the configuration of the forces found
-    last.
+    """Write the results of a contact by its kernel data, see `part_kernels`, in the configuration of the forces
+    evaluated last.
     """

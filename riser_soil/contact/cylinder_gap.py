@@ -8,7 +8,7 @@ rho = |d|, n = d/rho, tau = c'/|c'|, b = tau x n and kappa = n·c'', the gap g =
     δ²g  = (b·(δp - N δq))²/rho + rho (ε + kappa δs)²/c'² - 2 ε δs - kappa δs²,    ε = n·N'δq
 
 so four linear forms hold everything. At an end of the element s stays, and δ²g is that of the distance from a point:
-the sum over two directions square to n. A point that has come through to above the axis is taken to lie below it, with
+the sum over two directions square to n. A point that has come through to above the axis counts as lying below it, with
 rho < 0: the pipe pushes it down all the same.
 
 For friction the slide in a step is needed. The axis c(s) of a beam element lies nearest to the soil's point p at the
@@ -89,7 +89,7 @@ def fill_axis(vectors: Array, basis: Array, xi: float, L: float, forms: Array) -
 def frame(
     q: Array, L: float, radius: float, xi: float, p: tuple[float, float, float], vectors: Array, C: Array
 ) -> None:
-    """Writes vectors (4, 2, 3) of the forms δg, b·(…), ε and δs, by δp - N δq and by N'δq; C (4, 4), see `gap_forms`.
+    """Write vectors (4, 2, 3) of the forms δg, b·(…), ε and δs, by δp - N δq and by N'δq; C (4, 4), see `gap_forms`.
 
     At an end of the element the third form is along the other direction square to n.
     """
@@ -169,7 +169,7 @@ class Slide(NamedTuple):
 
 @njit
 def slide_workspace(nv: int, d: int) -> Slide:
-    """For a point of facets with so many nodes, beside a pipe in so many dimensions."""
+    """Workspace for the slide over a point of facets with nv nodes, of a pipe in d dimensions."""
     by_z, by_s_z = np.zeros((3, 4 * d + 3 * nv)), np.zeros((3, 4 * d + 3 * nv))
     ways, ahead = (np.empty(3), np.empty(3)), (np.empty((2, 3)), np.empty((2, 3)))
     return Slide(ways[0], ways[1], ahead[0], ahead[1], by_z, by_s_z, np.empty(nv), np.empty((nv, 2)))
@@ -230,7 +230,7 @@ def _columns(shape: Four, slope: Four, N: Array, basis: Array, by_z: Array, by_s
 
 @njit
 def _from_axis(q: Array, shape: Four, points: Array, nodes: IntArray, N: Array) -> Vec:
-    """From the axis to a point of a facet of points (np, 3) [m]."""
+    """Vector from the axis to a point of a facet of points (np, 3) [m]."""
     r = scale(-1.0, combined(q, shape))
     for a in range(len(nodes)):
         r = add(r, scale(N[a], vector(points[nodes[a]])))

@@ -6,7 +6,7 @@ Both are the node orders of Gmsh and VTK.
 strip8: quad4, then the next nodes across, beyond η = −1 twice and beyond η = 1 twice, in the order of the corners
 beside them. It is linear in ξ, and in η the smooth curve through four nodes of Catmull & Rom (1974), whose slope at a
 node is half of what lies between its neighbours. A node that has no next one is its own.
-The number of nodes, 4, 6 or 8, tells the kind.
+The number of nodes, 4, 6 or 8, determines the kind.
 
 The gap is that between a point and the deformed facet below it. The facet point below the point x solves Σ N_a(ξ) p_a =
 x in the two horizontal directions; the ground there has the height Z = Σ N_a(ξ) z_a and the slopes s = J⁻ᵀ ∂Z/∂ξ, J_iα

@@ -1,7 +1,7 @@
 """Friction of the riser on the seabed, integrated along its elements: the part "friction", and a line at one station.
 
 Vectors are in the line's axes. In the plane their third component is 0, and so are components in the lateral direction,
-which stands square to the plane. Directions are stored in arrays (d, r), axial and, in space, lateral.
+which is normal to the plane. Directions are stored in arrays (d, r), axial and, in space, lateral.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ Along = tuple[Vec, Vec]  # directions along the ground, axial and lateral
 
 @njit
 def directions_at(tau: Vec, normal: Vec) -> Along:
-    """Unit vectors along the ground from the riser's tangent and the ground's normal, zero where it stands upright."""
+    """Unit vectors along the ground from the riser's tangent and the ground's normal, zero of an upright riser."""
     n = scale(1.0 / norm(normal), normal)
     axial = sub(tau, scale(dot(tau, n), n))
     length = norm(axial)
@@ -73,7 +73,7 @@ def vector_of(along: Along, v: Pair) -> Vec:
 
 @njit
 def elastic_guess(along: Along, traction: Vec, k: float, moved: Vec) -> Pair:
-    """t* of `coulomb`, from the traction at the start of a step and the movement in it."""
+    """Elastic guess t* of the traction, see `coulomb`, from that at the start of a step and the movement in it."""
     return components(along, sub(traction, scale(k, moved)))
 
 
@@ -94,9 +94,9 @@ def resistance_by_movement(along: Along, k: float, by_elastic: tuple[Pair, Pair]
 
 
 @njit
-def slip_at(along: Along, taken: Vec, k: float, moved: Vec) -> float:
-    """Plastic slip in a step in which the ground takes up a traction elastically [m]."""
-    a, b = components(along, sub(moved, scale(1.0 / k, taken)))
+def slip_at(along: Along, decrease: Vec, k: float, moved: Vec) -> float:
+    """Plastic slip in a step [m]: the movement less its elastic part, which comes with a decrease of the traction."""
+    a, b = components(along, sub(moved, scale(1.0 / k, decrease)))
     return math.sqrt(a * a + b * b)
 
 
@@ -120,7 +120,7 @@ class FrictionData(NamedTuple):
 
     Where a step starts: positions (ne, ng, d); directions along the ground (ne, ng, d, r), axial and, in space,
     lateral; traction (ne, ng, d) on the riser [N/m] and way slid (ne, ng) [m].
-    resistance (ne, ng, d): minus the traction found last, of elements that touch.
+    resistance (ne, ng, d): minus the traction as evaluated last, of elements that touch.
     """
 
     contact: TouchingStations
@@ -139,14 +139,14 @@ AT_START = "position", "along", "traction"  # of friction's kernel data: what a 
 
 @by_type
 def write_start(part: Any, at: Configuration) -> Any:
-    """Write the places and directions from which a step starts, where the contact's forces have been found."""
+    """Write the places and directions from which a step starts, after the contact's forces have been evaluated."""
 
 
 class SeabedFriction(CompiledPart):
     """Base of the parts of friction at the points of a contact with a seabed, whose normal forces they read; group E.
 
     mu (2,): coefficients; slid: the way that each point has slid [m]. Kernel data have what AT_START names. Directions
-    are those of the start of the step; the traction is kept in constant axes.
+    are those of the start of the step; the traction's axes are constant.
     """
 
     traits = Traits("E", symmetric=False, path_dependent=True, gradual=True, roles=(Stateful,))
@@ -155,7 +155,7 @@ class SeabedFriction(CompiledPart):
     def __init__(self, field: MovingNodes, contact: CompiledPart, mu: Array, slid: Array) -> None:
         super().__init__(field)
         self._contact, self._mu, self._slid = contact, mu, slid
-        self._begun = False  # whether it is known what a step starts from
+        self._begun = False  # whether the data have what a step starts from
 
     def stick(self) -> None:
         """From now on nothing slides, as in small vibrations about rest."""
@@ -181,8 +181,8 @@ class SeabedFriction(CompiledPart):
 
     def state(self) -> Saved:
         """What the next step starts from, if there was one, and the slip of the points."""
-        known = {name: getattr(self._data, name).copy() for name in AT_START} if self._begun else {}
-        return {"slid": self._slid.copy()} | known
+        at_start = {name: getattr(self._data, name).copy() for name in AT_START} if self._begun else {}
+        return {"slid": self._slid.copy()} | at_start
 
     def restore(self, saved: Saved) -> None:
         self._slid[...], self._begun = saved["slid"], "position" in saved
@@ -195,7 +195,7 @@ class CoulombFriction(SeabedFriction):
     """Part "friction": friction at the stations of a `SeabedContact`.
 
     axial, lateral: coefficients, > 0. stiffness (ne,): of the ground along itself, per length [N/m2], see
-    `mobilised_within`. adhesion: what clay holds the pipe by at most. The force acts on the axis.
+    `mobilised_within`. adhesion: of clay, which limits friction. The force acts on the axis.
     """
 
     line: Line
@@ -213,8 +213,8 @@ class CoulombFriction(SeabedFriction):
     def make_kernel_data(self) -> FrictionData:
         d, shape = self.line.dimension, self.contact.share.shape
         position, traction, resistance = (np.zeros((*shape, d)) for _ in range(3))
-        given = self.contact.kernel_data().touching, self._mu, self._adhesion, self._stiffness
-        return FrictionData(*given, position, np.zeros((*shape, d, d - 1)), traction, self._slid, resistance)
+        contact, law = self.contact.kernel_data().touching, (self._mu, self._adhesion, self._stiffness)
+        return FrictionData(contact, *law, position, np.zeros((*shape, d, d - 1)), traction, self._slid, resistance)
 
     def kernel_data(self) -> FrictionData:
         data: FrictionData = self._data
@@ -222,8 +222,8 @@ class CoulombFriction(SeabedFriction):
 
     def slip(self) -> Array:
         """Accumulated slip of the riser over the ground at its nodes (nn,) [m], >= 0."""
-        put, slip = self._write_slip
-        put()
+        write_slip, slip = self._write_slip
+        write_slip()
         return slip.copy()
 
     def bind(self) -> None:
@@ -232,7 +232,7 @@ class CoulombFriction(SeabedFriction):
 
     @cached_property
     def _write_slip(self) -> tuple[Bound, Array]:
-        """What writes the slip at the nodes, and where to."""
+        """The kernel that writes the slip at the nodes, and its target (nn,)."""
         slip = np.empty(self.line.nodes)
         return self.contact.write_at_nodes(self._slid, slip), slip
 
@@ -254,7 +254,7 @@ def mobilised_within(
 
 @njit
 def _elastic(part: FrictionData, e: int, g: int) -> Pair:
-    """t* of `coulomb` at a station."""
+    """Elastic guess t* of the traction at a station, see `coulomb`."""
     guess: Pair = elastic_guess(
         read_along(part.along[e, g]), padded(part.traction[e, g]), part.stiffness[e], _moved(part, e, g)
     )
@@ -270,7 +270,7 @@ def _moved(part: FrictionData, e: int, g: int) -> Vec:
 
 @njit
 def _limits(part: FrictionData, e: int, g: int) -> tuple[Pair, Pair]:
-    """L of `coulomb` at a station, and its derivative by the penetration."""
+    """Limits L of the traction at a station, see `coulomb`, and their derivative by the penetration."""
     contact, mu, p = part.contact, (part.mu[0], part.mu[1]), e * part.slid.shape[1] + g
     most = adhesion_at(part.adhesion, contact.penetration[p]) if mu[0] < math.inf else (math.inf, 0.0)
     limit: tuple[Pair, Pair] = limits(contact.force[p], contact.slope[p], mu, most)
@@ -279,7 +279,7 @@ def _limits(part: FrictionData, e: int, g: int) -> tuple[Pair, Pair]:
 
 @add_forces.of(FrictionData)
 def _friction_forces(part: FrictionData, at: Configuration, out: LineForces) -> None:
-    """After those of the contact that it belongs to."""
+    """Add friction; called after the forces of its contact."""
     contact = part.contact
     for e in range(part.stiffness.size):
         if not contact.touches[e]:
@@ -336,14 +336,14 @@ def _friction_work(part: FrictionData, first: Configuration, last: Configuration
 
 @keep.of(FrictionData)
 def _keep_traction(part: FrictionData, at: Configuration) -> None:
-    """The traction, the way slid beyond the elastic mobilisation, and what the next step starts from."""
+    """Keep the traction, the way slid beyond the elastic mobilisation, and what the next step starts from."""
     contact = part.contact
     for e in range(part.stiffness.size):
         for g in range(part.slid.shape[1]):
             t, k = padded(part.traction[e, g]), part.stiffness[e]
             if contact.force[e * part.slid.shape[1] + g] > 0.0:
-                taken = add(t, padded(part.resistance[e, g]))
-                part.slid[e, g] += slip_at(read_along(part.along[e, g]), taken, k, _moved(part, e, g))
+                decrease = add(t, padded(part.resistance[e, g]))
+                part.slid[e, g] += slip_at(read_along(part.along[e, g]), decrease, k, _moved(part, e, g))
             for i in range(len(at.D)):
                 part.traction[e, g, i] = -part.resistance[e, g, i] if contact.touches[e] else 0.0
     write_start(part, at)

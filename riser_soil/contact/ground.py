@@ -1,4 +1,4 @@
-"""The deformed soil surface as contact sees it, and candidate pairs of a node or element of the riser and a facet.
+"""The deformed soil surface under contact, and candidate pairs of a node or element of the riser and a facet.
 
 Candidate pairs are all that may touch. They set the sparsity pattern of contact in the tangent.
 """
@@ -72,7 +72,7 @@ class DeformedSurface:
 
     @property
     def measured(self) -> Array:
-        """Points (np, 3) of the surface where areas are taken [m]."""
+        """Points (np, 3) of the surface where areas are measured [m]."""
         return np.asarray(self._surface.points + self._surface.placed)
 
     @property
@@ -86,16 +86,16 @@ class DeformedSurface:
         return self._surface.committed
 
     def stretch(self, deformed: Array, facets: IntArray) -> float:
-        """Largest area of some facets of a deformed surface (np, 3), seen square to them at first, over that at first;
-        1 of none.
+        """Largest area of some facets of a deformed surface (np, 3), projected along their first normals, over their
+        first area; 1 of none.
         """
         now, before = (vector_areas(points[self.facets[facets]]) for points in (deformed, self.at_first))
         return float(np.max(np.sum(now * before, axis=1) / np.sum(before * before, axis=1), initial=1.0))
 
     def height(self, xy: Array, points: Array) -> Array:
         """Height (n,) [m] of the surface of some points at horizontal positions (n, 2) [m]; nan beside it."""
-        found = self.heights(xy, points)
-        return np.where(np.isfinite(found), found, np.nan)
+        height = self.heights(xy, points)
+        return np.where(np.isfinite(height), height, np.nan)
 
     def heights(self, xy: Array, points: Array) -> Array:
         """Height (n,) [m] of the surface of some points at horizontal positions (n, 2) [m]; −inf beside it."""
@@ -196,7 +196,7 @@ def touching_boxes(low: Array, high: Array, points: Array, facets: IntArray) -> 
     points (np, 3): deformed points. facets (nf, nv).
     """
     boxes, levels = bounds(points, facets), _levels(points, facets)
-    found, top = [(0, 0) for _ in range(0)], levels[:, 1].max() if len(levels) else -np.inf
+    touching, top = [(0, 0) for _ in range(0)], levels[:, 1].max() if len(levels) else -np.inf
     for i in range(len(low)):
         if low[i, 2] > top:
             continue
@@ -204,9 +204,9 @@ def touching_boxes(low: Array, high: Array, points: Array, facets: IntArray) -> 
             beside = low[i, 0] > boxes[f, 2] or high[i, 0] < boxes[f, 0]
             beside = beside or low[i, 1] > boxes[f, 3] or high[i, 1] < boxes[f, 1]
             if not (beside or low[i, 2] > levels[f, 1] or high[i, 2] < levels[f, 0]):
-                found.append((i, f))
-    first, second = np.empty(len(found), np.int64), np.empty(len(found), np.int64)
-    for k, (i, f) in enumerate(found):
+                touching.append((i, f))
+    first, second = np.empty(len(touching), np.int64), np.empty(len(touching), np.int64)
+    for k, (i, f) in enumerate(touching):
         first[k], second[k] = i, f
     return first, second
 

@@ -1,6 +1,6 @@
 """Integration points of contact on the soil's surface: facets divided evenly, and the history kept at points.
 
-Points are fixed to the soil: each keeps its place on its facet and the area that it stands for. They lie in rows,
+Points are fixed to the soil: each keeps its place on its facet and the area that belongs to it. They lie in rows,
 spaced evenly on straight lines in (xi, eta). quad4 and strip8 are cut into rows along eta and these into columns. tri6
 is cut along the riser, from its corner in the middle across the riser to the side opposite; both parts are cut into
 rows from that line to their last corner, of even height, and each row into as many pieces. The points lie in the
@@ -86,7 +86,7 @@ def _unit(v: Array) -> Array:
 
 @njit
 def row_of(nodes: int, cut: IntArray, row: int) -> tuple[Place, Place, float]:
-    """Ends of a facet's row in (xi, eta), and the area there that each of its points stands for."""
+    """Ends of a facet's row in (xi, eta), and the area there that belongs to each of its points."""
     rows, columns, below = cut[0], cut[1], cut[2]
     if not triangular(nodes):
         xi = -1.0 + (2 * row + 1) / rows
@@ -117,8 +117,9 @@ def area(points: Array, facet: IntArray, dN: Array) -> float:
     return math.sqrt((a2 * b3 - a3 * b2) ** 2 + (a3 * b1 - a1 * b3) ** 2 + (a1 * b2 - a2 * b1) ** 2)
 
 
-class KeptRows(NamedTuple):
-    """Rows (m, k) by the numbers (m,) of points, which rise; `untouched` (k,) of all others."""
+class PointHistory(NamedTuple):
+    """History of points: rows (m, k) by the points' numbers (m,), which rise; `untouched` (k,) is that of all others.
+    """
 
     numbers: IntArray
     rows: Array
@@ -126,57 +127,57 @@ class KeptRows(NamedTuple):
 
 
 @njit
-def write_kept(kept: KeptRows, numbers: IntArray, n: int, out: Array) -> None:
-    """Write the rows (n, k) of the first n points (n,)."""
+def write_history(history: PointHistory, numbers: IntArray, n: int, out: Array) -> None:
+    """Write the history (n, k) of the first n of points by their numbers."""
     for i in range(n):
-        place = np.searchsorted(kept.numbers, numbers[i])
-        known = place < kept.numbers.size and kept.numbers[place] == numbers[i]
-        for k in range(kept.untouched.size):
-            out[i, k] = kept.rows[place, k] if known else kept.untouched[k]
+        row = np.searchsorted(history.numbers, numbers[i])
+        has_row = row < history.numbers.size and history.numbers[row] == numbers[i]
+        for k in range(history.untouched.size):
+            out[i, k] = history.rows[row, k] if has_row else history.untouched[k]
 
 
 class PointMemory:
-    """Rows (n, k) by the numbers (n,) of points; `untouched` (k,) where none is kept.
+    """History of points between steps: rows (n, k) by the points' numbers (n,), `untouched` (k,) of all others.
 
-    kept: for compiled code, others only once there is no room; behind the numbers are some that no point has.
+    history: with room for more points, NOBODY their number; a new one is made only where the room does not suffice.
     """
 
     def __init__(self, untouched: Array) -> None:
         self._count = 0
-        self.kept = KeptRows(np.empty(0, dtype=np.int64), np.empty((0, len(untouched))), untouched)
+        self.history = PointHistory(np.empty(0, dtype=np.int64), np.empty((0, len(untouched))), untouched)
 
     @property
     def numbers(self) -> IntArray:
         """Numbers (n,) of the points, which rise; written to with the next step."""
-        return self.kept.numbers[: self._count]
+        return self.history.numbers[: self._count]
 
     @property
     def rows(self) -> Array:
         """Rows (n, k) of the points; written to with the next step."""
-        return self.kept.rows[: self._count]
+        return self.history.rows[: self._count]
 
     def at(self, numbers: IntArray) -> Array:
-        """Rows (n, k) of points (n,)."""
-        out = np.empty((len(numbers), self.kept.untouched.size))
-        write_kept(self.kept, numbers, len(numbers), out)
+        """History (n, k) of points (n,)."""
+        out = np.empty((len(numbers), self.history.untouched.size))
+        write_history(self.history, numbers, len(numbers), out)
         return out
 
     def keep(self, numbers: IntArray, rows: Array) -> None:
-        """Keep the rows (n, k) of these points (n,), each at most once, and forget those of all others."""
-        changed = np.any(rows != self.kept.untouched, axis=1)
+        """Keep the history (n, k) of these points (n,), each at most once, and forget that of all others."""
+        changed = np.any(rows != self.history.untouched, axis=1)
         order = np.argsort(numbers[changed])
         self._write(numbers[changed][order], rows[changed][order])
 
     def _write(self, numbers: IntArray, rows: Array) -> None:
         self._count = n = len(numbers)
-        if n > len(self.kept.numbers):
-            room, untouched = np.empty((2 * n, rows.shape[1])), self.kept.untouched
-            self.kept = KeptRows(np.empty(2 * n, dtype=np.int64), room, untouched)
-        self.kept.numbers[:n], self.kept.numbers[n:] = numbers, NOBODY
-        self.kept.rows[:n] = rows
+        if n > len(self.history.numbers):
+            room, untouched = np.empty((2 * n, rows.shape[1])), self.history.untouched
+            self.history = PointHistory(np.empty(2 * n, dtype=np.int64), room, untouched)
+        self.history.numbers[:n], self.history.numbers[n:] = numbers, NOBODY
+        self.history.rows[:n] = rows
 
     def go_over(self, numbers: IntArray, before: Array, after: Array) -> None:
-        """Points (n,) that lay at places (n, 3) lie at others now: what is kept stays where it was, see `carried`."""
+        """Points (n,) that lay at places (n, 3) lie at others now: the history stays where it was, see `carried`."""
         if self._count:
             self.keep(numbers, carried(before, self.at(numbers), after))
 

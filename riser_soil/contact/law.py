@@ -120,9 +120,9 @@ def automatic_stiffness(
 
     The first term keeps the penalty's give at about a tenth of the soil's own settlement; the second keeps
     the penetration of a riser at rest at a thousandth of its diameter. On a rigid floor (E_soil is None) the
-    second stands alone: a larger k would lessen an error that is small already and raise the impact frequency
+    second is the only one: a larger k would lessen an error that is small already and raise the impact frequency
     √(k/m), hence the time step's cost. Where the reaction peaks at touchdown the penetration grows in
-    proportion; it is reported with the results.
+    proportion; the results have it.
 
     E_soil: Young's modulus at the soil's surface [Pa]. weight_per_length: submerged weight [N/m].
     outer_diameter: [m].

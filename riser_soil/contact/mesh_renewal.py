@@ -56,14 +56,17 @@ class MeshRenewal:
         return Energy()
 
     def work(self, before: State, after: State) -> Work:
-        """What the transfer before the step has lost."""
+        """Energy lost in the transfer to a new mesh before the step."""
         return Work(dissipated=self._lost)
 
     def commit(self, state: State) -> None:
         self._lost = 0.0
 
     def renew(self, state: State) -> bool:
-        """Go on on a new mesh if need be and there is one; whether so. state: accepted, increments zero. Collective."""
+        """Renew the mesh if cells have strained too far and a new one can be made; whether it was. Collective.
+
+        state: accepted, increments zero.
+        """
         comm, strain = self._soil.grid.nodes.comm, self._soil.worn
         if max(comm.allgather(strain.max(initial=0.0))) < WORN:
             return False
@@ -85,8 +88,8 @@ class MeshRenewal:
         def gaps(points: Array) -> Array:
             return self._contact.gaps(points, state)
 
-        def brought_to(points: Array, asked: Array) -> Array:
-            return self._contact.brought_to(points, asked, state)
+        def brought_to(points: Array, wanted_gaps: Array) -> Array:
+            return self._contact.brought_to(points, wanted_gaps, state)
 
         return Pressing(gaps, brought_to, CLEAR * self._contact.radius)
 

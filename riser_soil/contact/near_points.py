@@ -23,7 +23,7 @@ FEW = 4096  # points for which there is room at first
 
 class Surface(NamedTuple):
     """facets (nf, nv); their `divisions` (nf, 5) and the numbers (nf,) of their first integration points; points
-    (np, 3) [m] where areas are taken, and at a state.
+    (np, 3) [m] where areas are measured, and at a state.
     """
 
     facets: IntArray
@@ -77,10 +77,10 @@ def near_points(axis: Axis, surface: Surface, elements: IntArray, facets: IntArr
     pairs, capacity = by_facet(elements, facets, len(surface.facets)), FEW
     while True:
         points = points_workspace(capacity)
-        found = fill_near(axis, surface, pairs, within, points)
-        if found <= capacity:
-            return first_of(points, found)
-        capacity = found
+        count = fill_near(axis, surface, pairs, within, points)
+        if count <= capacity:
+            return first_of(points, count)
+        capacity = count
 
 
 def points_workspace(count: int) -> NearPoints:
@@ -124,7 +124,7 @@ def fill_near(axis: Axis, surface: Surface, pairs: PairsByFacet, within: float, 
     """Write points of some pairs whose gap is less than `within` [m], as far as there is room; how many there are."""
     bow = bow_of(axis)
     capacity, n, nv = len(out.gap), 0, surface.facets.shape[1]
-    N, dN, hull, kept = np.empty(nv), np.empty((nv, 2)), np.empty((nv, 3)), np.empty_like(pairs.elements)
+    N, dN, hull, in_reach = np.empty(nv), np.empty((nv, 2)), np.empty((nv, 3)), np.empty_like(pairs.elements)
     for i, f in enumerate(pairs.facets):
         nodes, cut = surface.facets[f], surface.parts[f]
         rows, columns = cut[0], cut[1]
@@ -134,8 +134,8 @@ def fill_near(axis: Axis, surface: Surface, pairs: PairsByFacet, within: float, 
             first, last, share = row_of(nv, cut, row)
             a, b, bends = _curve(surface.deformed, nodes, first, last, N, dN)
             aside = max(norm(bends[0]), norm(bends[1]))
-            column, behind, count = _in_row(axis, bow, near, a, b, columns, within + 0.75 * aside, kept)
-            beside, apart = kept[:count], (norm(sub(b, a)) + 3.0 * aside) / columns
+            column, behind, count = _in_row(axis, bow, near, a, b, columns, within + 0.75 * aside, in_reach)
+            beside, apart = in_reach[:count], (norm(sub(b, a)) + 3.0 * aside) / columns
             while column < behind:
                 part = (column + 0.5) / columns
                 p = _on_curve(a, b, bends, part)
@@ -209,13 +209,13 @@ def _not_beyond(axis: Axis, bow: Array, elements: IntArray, hull: Array, within:
     """Those elements to which a point between some (nv, 3) may have a gap less than `within` [m]: seen from the line
     through the element's ends towards their middle, some of them is no farther than that.
     """
-    kept, n = np.empty(len(elements), np.int64), 0
+    near, n = np.empty(len(elements), np.int64), 0
     for e in elements:
         least = _least_beside(axis.q[e], hull)
         if least < (axis.radius[e] + within + bow[e]) * (1.0 + ROUND_OFF):
-            kept[n] = e
+            near[n] = e
             n += 1
-    return kept[:n]
+    return near[:n]
 
 
 @njit
@@ -248,11 +248,11 @@ def _in_row(
     b: tuple[float, float, float],
     count: int,
     within: float,
-    kept: IntArray,
+    in_reach: IntArray,
 ) -> tuple[int, int, int]:
     """First and behind the last of `count` points, evenly spaced on the straight row from a to b, that may have a gap
     less than `within` [m] to some of the elements: those nearer to the lines through the elements' ends than that. Such
-    elements, whose ends the row does not lie farther beyond either, are written to `kept`; last their number.
+    elements, whose ends the row does not lie farther beyond either, are written to `in_reach`; last their number.
     """
     low, high, n = 1.0, 0.0, 0
     for e in elements:
@@ -266,7 +266,7 @@ def _in_row(
         ahead = max(-max(cw, cw + cd), min(cw, cw + cd) - cc)
         if ahead > reach * math.sqrt(cc):
             continue
-        kept[n] = e
+        in_reach[n] = e
         inverse = 1.0 / cc if cc > 0.0 else 0.0
         square, tilt, at_a = dd - cd * cd * inverse, wd - cw * cd * inverse, ww - cw * cw * inverse - reach * reach
         root = tilt * tilt - square * at_a

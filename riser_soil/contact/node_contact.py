@@ -42,7 +42,7 @@ class NodeContact(SoilContact):
     Node i carries f(δ_i) times its tributary length. All forces derive from the potential Σ ψ(δ_i)·length_i: the
     tangent is symmetric, and the forces on riser and soil sum to zero in all directions.
 
-    Each node stands on four points around it, ±footprint [m] across the riser and a golden ratio more along it; on one
+    Each node rests on four points around it, ±footprint [m] across the riser and a golden ratio more along it; on one
     where footprint = 0. A node presses a kink into the surface where facets meet below it; there the slope, and with it
     the horizontal force, jumps from side to side, and Newton finds no balance. Four points straddle the kink. The
     default is an eighth of the outer diameter, half the chord by which a pipe touches once it has sunk in by 3 % of its
@@ -50,7 +50,7 @@ class NodeContact(SoilContact):
 
     radius (nn,): distance [m] from the axis to the line that touches, 0 for the axis itself. along (2,): horizontal
     unit vector of the riser on the ground; by default its first axis. reach: by default 1 % of the riser's length above
-    the ground and half a facet around a node. points: those that all nodes stand on.
+    the ground and half a facet around a node. points: the contact points of all nodes.
     """
 
     points: ContactPoints
@@ -77,27 +77,27 @@ class NodeContact(SoilContact):
         self._basis = np.ascontiguousarray(line.basis)
 
     def below(self, state: State) -> PointsBelow:
-        """Where the points stand, found once at a state."""
-        found: PointsBelow = self.line.trial(state).once((self, "below"), self._find_below)
-        return found
+        """Facets below the points and gaps over them, evaluated once at a state."""
+        below: PointsBelow = self.line.trial(state).once((self, "below"), self._find_below)
+        return below
 
     def _find_below(self, trial: Trial) -> PointsBelow:
         state = trial.state
-        surface, found = self._soil.deformed(state), points_below(len(self.points.node))
+        surface, below = self._soil.deformed(state), points_below(len(self.points.node))
         level = float(surface[:, 2].max()) + self._reach.above
-        find_below(self.place(state), self._radius, self.points, level, self._soil.cover(surface), found)
-        return found
+        find_below(self.place(state), self._radius, self.points, level, self._soil.cover(surface), below)
+        return below
 
     def touching(self, state: State) -> TouchingNodes:
-        """What touches, found once at a state."""
-        found: TouchingNodes = self.line.trial(state).once((self, "touching"), self._find_touching)
-        return found
+        """What touches, evaluated once at a state."""
+        touching: TouchingNodes = self.line.trial(state).once((self, "touching"), self._find_touching)
+        return touching
 
     def _find_touching(self, trial: Trial) -> TouchingNodes:
         state = trial.state
-        found = touching_workspace(len(self.points.node))
-        n, energy = find_touching(self.law.kernel_data, self.points, self.below(state), found)
-        return self._touching_nodes(first_touching(found, n), energy, self._soil.deformed(state))
+        workspace = touching_workspace(len(self.points.node))
+        n, energy = find_touching(self.law.kernel_data, self.points, self.below(state), workspace)
+        return self._touching_nodes(first_touching(workspace, n), energy, self._soil.deformed(state))
 
     def _touching_nodes(self, points: TouchingPoints, energy: float, surface: Array) -> TouchingNodes:
         return TouchingNodes(points, energy, surface, self._soil.facets, self._basis)
@@ -112,18 +112,18 @@ class NodeContact(SoilContact):
 
     def candidates(self, places: Sequence[Array], surface: Array) -> CandidatePairs:
         highest = float(surface[:, 2].max()) + self.law.start + self._reach.above + self._reach.around
-        found, distance = CandidatePairs.none(len(self._soil.facets)), ASPECT * self._footprint + self._reach.around
+        pairs, distance = CandidatePairs.none(len(self._soil.facets)), ASPECT * self._footprint + self._reach.around
         for x in places:
             low = np.flatnonzero(x[:, 2] - self._radius < highest)
-            found = found.joined(pairs_around(low, x[low, :2], surface, self._soil.facets, distance))
-        return found
+            pairs = pairs.joined(pairs_around(low, x[low, :2], surface, self._soil.facets, distance))
+        return pairs
 
     def residual(self, state: State, forces: Forces) -> None:
         """Add dψ/du: minus the force on the riser, minus the force on the soil."""
         self.touching(state).add_residual(self.line.nodal(forces.end), forces.end[self._soil.part])
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        """Add d²ψ/du², unweighted: contact stands at the end of the step."""
+        """Add d²ψ/du², unweighted: contact forces are those at the end of the step."""
         touching = self.touching(state)
         places = self.places(values[SOIL], touching.points.node, touching.points.facet)
         add_blocks(values[SOIL], places, touching.hessian)
@@ -192,8 +192,8 @@ class NodeContact(SoilContact):
         cover = self._soil.cover()._replace(points=deformed)
         none = np.empty(0, dtype=np.int64), np.zeros(len(cover.facets), dtype=np.bool_)
         line = self.line.origin, self._basis, self._radius, self.points
-        found = x, points_below(n), touching_workspace(n), touched
-        return NodeContactData(*line, self.law.kernel_data, cover, WatchedFacets(*none, 0.0), *found)
+        outcome = x, points_below(n), touching_workspace(n), touched
+        return NodeContactData(*line, self.law.kernel_data, cover, WatchedFacets(*none, 0.0), *outcome)
 
     def at_start(self, data: NodeContactData) -> NodeContactData:
         data.cover.renew(data.cover.points)
@@ -213,8 +213,8 @@ class NodeContact(SoilContact):
     def adopt(self, state: State, data: NodeContactData) -> None:
         n = data.touched.counts[POINTS]
         points = TouchingPoints._make(each[:n].copy() for each in data.touching)
-        found = self._touching_nodes(points, float(data.touched.energy[0]), data.cover.points.copy())
-        self.line.trial(state).once((self, "touching"), lambda _: found)
+        touching = self._touching_nodes(points, float(data.touched.energy[0]), data.cover.points.copy())
+        self.line.trial(state).once((self, "touching"), lambda _: touching)
 
     def stretch(self, state: State) -> float:
         if not self.active:

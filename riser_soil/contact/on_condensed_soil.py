@@ -1,7 +1,6 @@
 """Kernels of contact and friction with condensed soil in the line solver, chosen by their kernel data.
 
-What contact gives goes to a line's forces and tangent, and to a border: the soil's reached dofs, see
-`solve.soil_border`.
+They add to a line's forces and tangent, and to a border: the soil's reached dofs, see `solve.soil_border`.
 """
 
 from __future__ import annotations
@@ -14,15 +13,15 @@ from riser_soil.core.compiled import njit
 from riser_soil.riser.configuration import Configuration
 from riser_soil.riser.part_kernels import Border, LineForces
 
-HELD, BEYOND = -1, -2  # in place of a border's row: of dofs that are supported, and of those that are not reached
-# What is counted: points that touch; whether something has left what is watched, and whether more points are near than
-# there is room for.
-POINTS, LEFT, FULL = range(3)
+SUPPORTED, UNREACHED = -1, -2  # in place of a border's row, of dofs that have none
+# Entries of `Touched.counts`: the number of points that touch; 1 where something unwatched may touch, else 0; 1 where
+# more points are near than there is room for, else 0.
+POINTS, UNWATCHED, FULL = range(3)
 
 
 class TopMotion(NamedTuple):
     """How the watched nodes (k,) of the top move by the increments of the border's first unknowns, the reached dofs
-    (na,): by (3 k, na). accepted (np, 3): where all are before [m]. rows (np, 3): of the border, HELD or BEYOND.
+    (na,): by (3 k, na). accepted (np, 3): where all are before [m]. rows (np, 3): of the border, or why there is none.
     """
 
     nodes: IntArray
@@ -32,12 +31,12 @@ class TopMotion(NamedTuple):
 
 
 class Touched(NamedTuple):
-    """What contact has found last. counts (3,): see POINTS; met (np,): nodes of the top that are not reached, and bear
-    a force; energy (1,): stored [J].
+    """Outcome of the contact's last evaluation. counts (3,): see POINTS; newly_loaded (np,): nodes of the top that are
+    not reached, and bear a force; energy (1,): stored [J].
     """
 
     counts: IntArray
-    met: BoolArray
+    newly_loaded: BoolArray
     energy: Array
 
 
@@ -48,7 +47,7 @@ def add_contact(part: tuple, top: TopMotion, at: Configuration, out: LineForces,
 
 @bound_by_type
 def add_contact_tangent(part: tuple, top: TopMotion, at: Configuration, K: Array, border: Border) -> None:
-    """Add the derivative of that residual, found last, to K (ne, n, n) and to the border's."""
+    """Add the derivative of the residual that `add_contact` added last, to K (ne, n, n) and to the border's tangent."""
 
 
 @njit

@@ -46,7 +46,7 @@ class Cover(NamedTuple):
     xi: Array
 
     def renew(self, points: Array) -> None:
-        """Take other places of the points (np, 3) [m]."""
+        """Move the points to other places (np, 3) [m]."""
         self.points[...] = points
         self.boxes[...] = bounds(points, self.facets)
         self.limits[...] = limits_of(self.boxes)
@@ -69,17 +69,17 @@ class FacetSearch:
     def cover(self, points: Array) -> Cover:
         """The facets as what covers all below them, with their points at (np, 3) [m], which may be renewed."""
         boxes, work = bounds(points, self._facets), np.empty((self._facets.shape[1], 3))
-        made = Cover(self._plan, self._facets, points.copy(), boxes, np.empty(4), work, np.empty(2), np.empty(2))
-        made.renew(points)
-        return made
+        cover = Cover(self._plan, self._facets, points.copy(), boxes, np.empty(4), work, np.empty(2), np.empty(2))
+        cover.renew(points)
+        return cover
 
     def locate(self, xy: Array, points: Array) -> tuple[IntArray, Array]:
         """Facet (n,), −1 where there is none, and (ξ, η) on it (n, 2), of horizontal positions xy (n, 2).
 
         points (np, 3): the deformed points [m].
         """
-        found: tuple[IntArray, Array] = _locate(np.ascontiguousarray(xy), self._plan, self._facets, points)
-        return found
+        facet_and_xi: tuple[IntArray, Array] = _locate(np.ascontiguousarray(xy), self._plan, self._facets, points)
+        return facet_and_xi
 
 
 def _plan(boxes: Array) -> Plan:
@@ -165,10 +165,10 @@ def _holding(
     """The facet that holds a point (2,), -1 where none does; its (ξ, η) go to xi."""
     if not (limits[0] <= xy[0] <= limits[2] and limits[1] <= xy[1] <= limits[3]):
         return -1
-    found = _lowest_holding(xy, _proposed(plan, xy), facets, points, boxes, work, xi)
-    if found < 0:
-        found = _lowest_holding(xy, np.arange(len(facets)), facets, points, boxes, work, xi)
-    return found
+    facet = _lowest_holding(xy, _proposed(plan, xy), facets, points, boxes, work, xi)
+    if facet < 0:
+        facet = _lowest_holding(xy, np.arange(len(facets)), facets, points, boxes, work, xi)
+    return facet
 
 
 @njit
@@ -233,15 +233,15 @@ def _newton_step(xy: Array, points: Array, nodes: IntArray, N: Array, dN: Array)
 
 
 @njit
-def facet_below(cover: Cover, x: float, y: float, known: int) -> int:
-    """A facet that holds a horizontal position [m]; -1 where none does, as `FacetSearch.locate` finds it. known: the
-    one that held it last, or -1.
+def facet_below(cover: Cover, x: float, y: float, previous: int) -> int:
+    """A facet below a horizontal position [m]: that of last time, `previous`, where it still is one, else the one that
+    `FacetSearch.locate` finds; -1 where none is.
     """
-    if known >= 0 and _within_corners(cover.points, cover.facets[known], x, y):
-        return known
+    if previous >= 0 and _within_corners(cover.points, cover.facets[previous], x, y):
+        return previous
     cover.xy[0], cover.xy[1] = x, y
-    given = cover.plan, cover.facets, cover.points, cover.boxes, cover.limits, cover.work, cover.xi
-    return _holding(cover.xy, *given)
+    surface = cover.plan, cover.facets, cover.points, cover.boxes, cover.limits
+    return _holding(cover.xy, *surface, cover.work, cover.xi)
 
 
 @njit

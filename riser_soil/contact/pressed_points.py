@@ -15,9 +15,9 @@ import numpy as np
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.cylinder_gap import away_from_axis, gap_forms
 from riser_soil.contact.facets import fill_shape
-from riser_soil.contact.integration_points import KeptRows, write_kept
+from riser_soil.contact.integration_points import PointHistory, write_history
 from riser_soil.contact.near_points import NearPoints, Surface, first_of, point_on
-from riser_soil.contact.on_condensed_soil import BEYOND
+from riser_soil.contact.on_condensed_soil import UNREACHED
 from riser_soil.core.arrays import Array, BoolArray, IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.riser.hermite import shape as axis_shape
@@ -76,44 +76,44 @@ class PressedPoints:
 
     @classmethod
     def of(
-        cls, axis: Axis, surface: Surface, basis: Array, points: NearPoints, law: Any, kept: KeptRows
+        cls, axis: Axis, surface: Surface, basis: Array, points: NearPoints, law: Any, history: PointHistory
     ) -> PressedPoints:
-        """The points among these where the law may act, by its kernel data and what is kept of its history."""
-        found = press_workspace(points, kept.untouched.size)
-        n, potential = find_pressed(law, kept, axis, surface, len(points.gap), found)
-        given = first_of(points, n), found.force[:n], found.slope[:n], potential
-        return cls(axis, surface, basis, *given, found.on_riser[:n], found.after[:n])
+        """The points among these where the law may act, by its kernel data and its history."""
+        out = press_workspace(points, history.untouched.size)
+        n, potential = find_pressed(law, history, axis, surface, len(points.gap), out)
+        forces = out.force[:n], out.slope[:n], potential, out.on_riser[:n]
+        return cls(axis, surface, basis, first_of(points, n), *forces, out.after[:n])
 
     @classmethod
-    def kept(
-        cls, axis: Axis, surface: Surface, basis: Array, n: int, potential: float, found: PressWorkspace
+    def copied(
+        cls, axis: Axis, surface: Surface, basis: Array, n: int, potential: float, workspace: PressWorkspace
     ) -> PressedPoints:
-        """The first n points of a workspace, as they are now; it is written to again."""
+        """Copies of the first n points of a workspace, which is written to again."""
         axis, surface = axis._replace(q=axis.q.copy()), surface._replace(deformed=surface.deformed.copy())
-        near = NearPoints._make(each[:n].copy() for each in found.near)
+        near = NearPoints._make(each[:n].copy() for each in workspace.near)
         force, slope, on_riser, history = (
-            each[:n].copy() for each in (found.force, found.slope, found.on_riser, found.after)
+            each[:n].copy() for each in (workspace.force, workspace.slope, workspace.on_riser, workspace.after)
         )
         return cls(axis, surface, basis, near, force, slope, potential, on_riser, history)
 
     @cached_property
     def pairs(self) -> Pairs:
-        found: Pairs = paired(self.points, len(self.axis.length))
-        return found
+        pairs: Pairs = paired(self.points, len(self.axis.length))
+        return pairs
 
     @cached_property
     def forms(self) -> tuple[Array, Array]:
         """Linear forms (n, 4, 4 d + 3 nv) of the gap at the points, and the symmetric matrices C (n, 4, 4) with which
         δ²g = forms·C·forms, as of `gap_forms`.
         """
-        found: tuple[Array, Array] = gap_forms(self.axis, self.surface, self.points, self.basis)
-        return found
+        forms: tuple[Array, Array] = gap_forms(self.axis, self.surface, self.points, self.basis)
+        return forms
 
     def spread(self, f: Array) -> tuple[Array, Array]:
         """Residuals of forces f (n, 3) on the pipe: conjugate to q (ne, 4, d), and of the surface (np, 3)."""
         F, soil = np.zeros((len(self.axis.length), 4, self.basis.shape[1])), np.zeros(self.surface.deformed.shape)
-        rows, met = np.arange(soil.size).reshape(soil.shape), np.empty(0, dtype=np.bool_)  # all nodes are reached
-        spread(self.axis, self.surface, self.basis, self.points, len(f), f, F, rows, soil.ravel(), met)
+        rows, none = np.arange(soil.size).reshape(soil.shape), np.empty(0, dtype=np.bool_)  # all nodes are reached
+        spread(self.axis, self.surface, self.basis, self.points, len(f), f, F, rows, soil.ravel(), none)
         return F, soil
 
     def work(self, f: Array, start: Start) -> float:
@@ -135,12 +135,12 @@ def write_axis(origin: Array, basis: Array, q: Array, axis: Array) -> None:
 
 @njit
 def find_pressed(
-    law: Any, kept: KeptRows, axis: Axis, surface: Surface, n: int, out: PressWorkspace
+    law: Any, history: PointHistory, axis: Axis, surface: Surface, n: int, out: PressWorkspace
 ) -> tuple[int, float]:
-    """Find what presses at the first n of the near points, of which those stay where the law may act: how many they
-    are, and the energy that they store [J]. kept: of the law's history.
+    """Write what presses at those of the first n near points where the law may act, the others being removed: how many
+    they are, and the energy that they store [J]. history: of the law.
     """
-    write_kept(kept, out.near.number, n, out.before)
+    write_history(history, out.near.number, n, out.before)
     n = keep_active(law, out.near, n, out.before)
     energy = press(law, out.near, n, out.before, out.after, out.force, out.slope)
     write_on_riser(axis, surface, out.near, n, out.force, out.on_riser)
@@ -154,8 +154,8 @@ def press(law: Any, points: NearPoints, n: int, before: Array, after: Array, for
     """
     energy = 0.0
     for i in range(n):
-        found, rise, stored = answer(law, -points.gap[i], before[i], after[i])
-        force[i], slope[i] = points.area[i] * found, points.area[i] * rise
+        pressure, rise, stored = answer(law, -points.gap[i], before[i], after[i])
+        force[i], slope[i] = points.area[i] * pressure, points.area[i] * rise
         energy += points.area[i] * stored
     return energy
 
@@ -163,18 +163,14 @@ def press(law: Any, points: NearPoints, n: int, before: Array, after: Array, for
 @njit
 def keep_active(law: Any, points: NearPoints, n: int, before: Array) -> int:
     """Keep those of the first n points where the law may act, with their histories (n, nh); how many they are."""
-    kept = 0
+    k = 0
     for i in range(n):
         if may_act(law, -points.gap[i], before[i]):
-            points.element[kept], points.facet[kept], points.number[kept] = (
-                points.element[i],
-                points.facet[i],
-                points.number[i],
-            )
-            points.along[kept], points.area[kept], points.gap[kept] = points.along[i], points.area[i], points.gap[i]
-            points.xi[kept], before[kept] = points.xi[i], before[i]
-            kept += 1
-    return kept
+            points.element[k], points.facet[k], points.number[k] = points.element[i], points.facet[i], points.number[i]
+            points.along[k], points.area[k], points.gap[k] = points.along[i], points.area[i], points.gap[i]
+            points.xi[k], before[k] = points.xi[i], before[i]
+            k += 1
+    return k
 
 
 @njit
@@ -200,10 +196,11 @@ def spread(
     F: Array,
     rows: IntArray,
     residual: Array,
-    met: BoolArray,
+    newly_loaded: BoolArray,
 ) -> None:
     """Add the residual of forces f (n, 3) on the pipe at the first n points: F (ne, 4, d) is conjugate to q, rows
-    (np, 3) are those of the soil's residual. Nodes that are not reached are marked in `met` (np,).
+    (np, 3) are those of the soil's residual. Nodes that bear a force and are not reached are marked in `newly_loaded`
+    (np,).
     """
     nv = surface.facets.shape[1]
     N, dN = np.empty(nv), np.empty((nv, 2))
@@ -220,8 +217,8 @@ def spread(
                 row = rows[nodes[a], j]
                 if row >= 0:
                     residual[row] += N[a] * force[j]
-                elif row == BEYOND and dot(force, force) > 0.0:
-                    met[nodes[a]] = True
+                elif row == UNREACHED and dot(force, force) > 0.0:
+                    newly_loaded[nodes[a]] = True
 
 
 @njit
@@ -253,18 +250,18 @@ def paired(points: NearPoints, elements: int) -> Pairs:
     n, m = len(element), 0
     pair, first, last = np.empty(n, np.int64), np.empty(n, np.int64), np.full(elements, -1)
     for i in range(n):
-        known = last[element[i]]
-        if known < 0 or facet[first[known]] != facet[i]:
-            known, first[m], m = m, i, m + 1
-            last[element[i]] = known
-        pair[i] = known
+        k = last[element[i]]
+        if k < 0 or facet[first[k]] != facet[i]:
+            k, first[m], m = m, i, m + 1
+            last[element[i]] = k
+        pair[i] = k
     return Pairs(pair, element[first[:m]], facet[first[:m]])
 
 
 @njit
 def pair_tangents(forms: Array, C: Array, force: Array, slope: Array, pairs: Pairs, P: Array) -> Array:
-    """Derivative (m, nr, nr) of the residual of what presses by the dofs of its pairs, P (ne, 2, d, r) held. forms, C:
-    of the gap, see `gap_forms`.
+    """Derivative (m, nr, nr) of the residual of what presses by the dofs of its pairs, at constant P (ne, 2, d, r).
+    forms, C: of the gap, see `gap_forms`.
     """
     by_z = np.zeros((pairs.element.size, forms.shape[2], forms.shape[2]))
     add_products(by_z, pairs.pair, forms, by_curvature(forms, C, force, slope))

@@ -35,7 +35,7 @@ from riser_soil.seabed.points import UNKNOWN, covered_by
 class Covering(NamedTuple):
     """What lies on the seabed in places, such as a block of soil; the seabed does not act there.
 
-    make: makes its kernel data, of a type with a kernel of `covered_by`; renew: makes that of the present place of it.
+    make: makes its kernel data, of a type with a kernel of `covered_by`; renew: writes its present place to them.
     """
 
     make: Callable[[], Any]
@@ -47,7 +47,7 @@ class SeabedContact(CompiledPart, RiserContact):
 
     line: the riser's field. radius (ne,): distance [m] from the axis to the line that touches, 0 for the axis itself.
     rule: the stations of an element, Gauss points by default; its two ends make it the classical contact of nodes.
-    covering: where the seabed does not act. at: the stations; share (ne, ng): arc length that each stands for [m].
+    covering: where the seabed does not act. at: the stations; share (ne, ng): arc length that belongs to each [m].
     memory (ne, ng, nh): the law's history.
     """
 
@@ -97,7 +97,7 @@ class SeabedContact(CompiledPart, RiserContact):
         self._renew_cover()
 
     def _renew_cover(self) -> None:
-        """What covers the ground moves as the line does: when a step is accepted."""
+        """Renew what covers the ground, which moves as the line does: when a step is accepted."""
         if self._covering is not None and self._covered_from is not self.line.x:
             self._covering.renew(self._cover)
             self._covered_from = self.line.x
@@ -128,7 +128,7 @@ class SeabedContact(CompiledPart, RiserContact):
         return self._results(state).force_per_length
 
     def write_at_nodes(self, values: Array, out: Array) -> Bound:
-        """What writes means at the nodes (nn,) of values at the stations (ne, ng), by their share of arc length."""
+        """A kernel that writes means at the nodes (nn,) of values at the stations (ne, ng), by shares of arc length."""
         return Bound(write_at_nodes, *map(Packed, (self._data.nodes, self.share, values, out)))
 
     def penetration(self, state: State) -> Array:
@@ -149,7 +149,7 @@ class SeabedContact(CompiledPart, RiserContact):
 
     @property
     def along(self) -> PointsAlong:
-        """The stations, ne ng points."""
+        """Points along the line: its stations, ne ng of them."""
         return self._along
 
     def contact_along_line(self, state: State) -> tuple[Array, Array]:
@@ -183,10 +183,10 @@ class SeabedContact(CompiledPart, RiserContact):
 class Cushion(SeabedContact):
     """Part "cushion": a seabed of springs over the soil, whose stiffness falls with the load factor t as (1 - t)².
 
-    At first it holds the riser just above the soil; its last share goes over to the soil at t = 1. The soil is loaded
-    gradually, and Newton's method meets a contact that grows, instead of a riser that falls from its first shape into
-    soil that has not felt it yet. level: of the soil's top [m]; it bears the weight per length [N/m] at a penetration
-    of `depth` [m], with which the riser's underside touches the soil. stays: whether its stiffness does.
+    At first it supports the riser just above the soil; its last share goes over to the soil at t = 1. The soil is
+    loaded gradually, and Newton's method meets a contact that grows, instead of a riser that falls from its first shape
+    into soil that has not felt it yet. level: of the soil's top [m]; it bears the weight per length [N/m] at a
+    penetration of `depth` [m], with which the riser's underside touches the soil. stays: whether its stiffness stays.
     """
 
     name, stays = "cushion", False
@@ -194,11 +194,11 @@ class Cushion(SeabedContact):
     def __init__(self, line: Line, radius: Array, level: float, weight: float, depth: float, soil: Covering) -> None:
         law, ground = Penalty(weight / depth, 0.25 * depth), Plane.level(level + depth)
         super().__init__(line, radius, ground, law, stations.THREE_POINTS, beside(soil))
-        self.shares = self._left = Shares(np.ones(1), np.ones(1))
+        self.shares = self._remaining = Shares(np.ones(1), np.ones(1))
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         super().renew_kernel_data(start, end)
-        for share, t in zip(self._left, (start, end), strict=True):
+        for share, t in zip(self._remaining, (start, end), strict=True):
             share[0] = 1.0 if self.stays else (1.0 - min(t, 1.0)) ** 2
 
 
@@ -214,7 +214,7 @@ def beside(soil: Covering) -> Covering:
 
 
 @covered_by.of(BesideData)
-def _beside(cover: BesideData, x: Vec, known: int) -> int:
+def _beside(cover: BesideData, x: Vec, previous: int) -> int:
     """0 beside the soil; over it the number n of what lies there as -2 - n."""
-    found = covered_by(cover.soil, x, -2 - known if known < UNKNOWN else UNKNOWN)
-    return 0 if found < 0 else -2 - found
+    number = covered_by(cover.soil, x, -2 - previous if previous < UNKNOWN else UNKNOWN)
+    return 0 if number < 0 else -2 - number

@@ -1,4 +1,4 @@
-"""Kernels of the contact with a seabed, see `part_kernels`: what touches, and what the ground answers.
+"""Kernels of the contact with a seabed, see `part_kernels`: what touches, and the ground's forces.
 
 Vectors are in the line's axes, the third component 0 in the plane.
 """
@@ -56,10 +56,10 @@ class LineFrame(NamedTuple):
 
 
 class TouchingStations(NamedTuple):
-    """Stations of a line's elements and their share of arc length (ne, ng); in the line's frame. As found last: which
-    elements touch (ne,); of the stations (n,), n = ne ng, position (n, d), penetration, gradient (n, 3) of the distance
-    from the ground in global axes, whether the law acts, force and slope. Workspace for an element, and for a vector
-    and a matrix of a station.
+    """Stations of a line's elements and their share of arc length (ne, ng); in the line's frame. As evaluated last:
+    which elements touch (ne,); of the stations (n,), n = ne ng, position (n, d), penetration, gradient (n, 3) of the
+    distance from the ground in global axes, whether the law acts, force and slope. Workspace for an element, and for a
+    vector and a matrix of a station.
     """
 
     at: stations.Stations
@@ -79,7 +79,7 @@ class TouchingStations(NamedTuple):
 
 class AtNodes(NamedTuple):
     """Nodes (nn,): line that belongs to each [m]; shares (2, ng) that stations of an element have in its first and its
-    second node; places (nn, 3) in global axes and penetrations, as found last.
+    second node; places (nn, 3) in global axes and penetrations, as evaluated last.
     """
 
     length: Array
@@ -133,8 +133,10 @@ def seabed_data(
     cover: Any,
     shares: Shares | None,
 ) -> SeabedData:
-    """With the workspace that they need; radius (ne,) [m]; memory (ne, ng, nh): the law's history; cover: kernel data
-    of what lies on the ground in places, None for nothing; shares: of the law that act, None for all of it.
+    """Kernel data of a contact at the stations `at` of a line, with the workspace that they need.
+
+    radius (ne,) [m]; memory (ne, ng, nh): the law's history; cover: kernel data of what lies on the ground in places,
+    None for nothing; shares: of the law that act, None for all of it.
     """
     (ne, ng, nh), d, n = memory.shape, line.dimension, share.size
     weights = (None, None) if shares is None else shares
@@ -147,10 +149,21 @@ def seabed_data(
     kernels, (find, before, nodal, hessians, aside, keeping) = spans(
         here.find, find_before, at_nodes.find, here.write_hessians, here.set_all_aside, here.keep
     )
-    answer = here.law.acts, here.law.force, here.law.slope
-    workspace = stations.element_workspace(2 * line.ndof, fixed(d)), np.zeros(d), np.zeros((d, d))
-    known = here.ground.penetration, here.ground.gradient, *answer, *workspace
-    touching = TouchingStations(at, share, frame_of(line), np.zeros(ne, dtype=np.bool_), np.zeros((n, d)), *known)
+    touching = TouchingStations(
+        at,
+        share,
+        frame_of(line),
+        touches=np.zeros(ne, dtype=np.bool_),
+        position=np.zeros((n, d)),
+        penetration=here.ground.penetration,
+        gradient=here.ground.gradient,
+        acts=here.law.acts,
+        force=here.law.force,
+        slope=here.law.slope,
+        element=stations.element_workspace(2 * line.ndof, fixed(d)),
+        f=np.zeros(d),
+        by=np.zeros((d, d)),
+    )
     nodes = AtNodes(line.tributary_length, linear, at_nodes.ground.place, at_nodes.ground.penetration)
     step = here.ground.place, here.ground.hessian, here.law.stored, began.ground.place, began.law.stored, work
     called = kernels, find, before, nodal, hessians, aside, keeping
@@ -220,7 +233,7 @@ def land(part: SeabedData, x: Array, moved: Array) -> None:
 
 @njit
 def _find_at_nodes(part: SeabedData, x: Array) -> None:
-    """Find the penetrations of nodes at x (nn, d)."""
+    """Write the penetrations of nodes at x (nn, d)."""
     for n in range(x.shape[0]):
         write(global_place(part.touching.frame, padded(x[n])), part.nodes.place[n])
     call_span(part.kernels, part.find_at_nodes)
@@ -271,9 +284,9 @@ def _contact_energy(part: SeabedData, at: Configuration, energy: Array) -> None:
 def _contact_work(part: SeabedData, first: Configuration, last: Configuration, work: Array) -> None:
     """Dissipated is the work of the force at the end of the step less the change of the energy stored.
 
-    Never negative on a plane, where the stored energy is convex in the penetration. What that force takes beyond the
-    work of the law along the step is the time scheme's; on ground without a history it is all. The last configuration
-    is that of the forces found last.
+    Never negative on a plane, where the stored energy is convex in the penetration. What that force extracts beyond
+    the work of the law along the step is the time scheme's; on ground without a history it is all. The last
+    configuration is that of the forces evaluated last.
     """
     touching, ng = part.touching, part.touching.share.shape[1]
     extracted, gained, by_law = 0.0, 0.0, 0.0
@@ -293,7 +306,7 @@ def _contact_work(part: SeabedData, first: Configuration, last: Configuration, w
 
 @keep.of(SeabedData)
 def _keep_history(part: SeabedData, at: Configuration) -> None:
-    """The law's history after the step."""
+    """Keep the law's history after the step."""
     call_span(part.kernels, part.keep)
 
 

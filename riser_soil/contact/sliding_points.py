@@ -14,7 +14,7 @@ from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.coulomb import limits, return_map
 from riser_soil.contact.cylinder_gap import Slide, gap_forms, slide_workspace, write_slide, write_slide_columns
 from riser_soil.contact.friction import components, read_along, resistance_by_movement, vector_of, write_along
-from riser_soil.contact.integration_points import KeptRows, write_kept
+from riser_soil.contact.integration_points import PointHistory, write_history
 from riser_soil.contact.near_points import NearPoints, Surface, first_of
 from riser_soil.contact.on_condensed_soil import POINTS, TopMotion, add_contact, add_contact_tangent
 from riser_soil.contact.pressed_points import Pairs, Start, add_products, in_dofs, paired, spread
@@ -25,7 +25,7 @@ from riser_soil.riser.configuration import Configuration
 from riser_soil.riser.part_kernels import Border, LineForces
 from riser_soil.riser.vectors import add, scale, sub, vector, write
 
-AREA = 3  # column of what is kept of a point, behind the traction
+AREA = 3  # column of a point's history, behind the traction
 
 
 class Resistance(NamedTuple):
@@ -38,7 +38,7 @@ class Resistance(NamedTuple):
 class SlidingPoints(NamedTuple):
     """Friction at n points in a trial state.
 
-    Kept from the accepted state: history (n, 4) and adhesion (n,) [Pa]. In the trial: way slid (n, 3) [m], directions
+    From the accepted state: history (n, 4) and adhesion (n,) [Pa]. In the trial: way slid (n, 3) [m], directions
     (n, 2, 3), elastic guess and traction (n, 3) [Pa], and force (n, 3) [N] on the riser.
     """
 
@@ -99,8 +99,8 @@ def friction_tangents(
     sliding: SlidingPoints,
     P: Array,
 ) -> Array:
-    """Derivative (m, nr, nr) of the residual of friction by the dofs of its pairs, P (ne, 2, d, r) held. force (n,) [N]
-    and slope (n,) [N/m]: of the pressure; forms: of the gap, see `gap_forms`.
+    """Derivative (m, nr, nr) of the residual of friction by the dofs of its pairs, at constant P (ne, 2, d, r).
+    force (n,) [N] and slope (n,) [N/m]: of the pressure; forms: of the gap, see `gap_forms`.
     """
     n, _, nz = forms.shape
     at, by_z = slide_workspace(surface.facets.shape[1], basis.shape[1]), np.zeros((len(pairs.element), nz, nz))
@@ -152,13 +152,13 @@ def _write_factors(
 
 
 class SoilFrictionData(NamedTuple):
-    """A `SoilFriction` on condensed soil: the kernel data of the contact, what resists, what is kept of the points, and
-    q (ne, 4, 3) of the axis where the step starts; points: what was found last, with room for more.
+    """A `SoilFriction` on condensed soil: the kernel data of the contact, what resists, history of the points, and
+    q (ne, 4, 3) of the axis where the step starts; points: as evaluated last, with room for more.
     """
 
     contact: SurfaceContactData
     resistance: Resistance
-    kept: KeptRows
+    history: PointHistory
     q: Array
     points: SlidingPoints
 
@@ -169,11 +169,11 @@ def _friction(
 ) -> None:
     contact, sliding = part.contact, part.points
     near, n = contact.pressed.near, contact.touched.counts[POINTS]
-    write_kept(part.kept, near.number, n, sliding.before)
+    write_history(part.history, near.number, n, sliding.before)
     pressed, start = (near, n, contact.pressed.force), (part.q, top.accepted)
     find_tractions(part.resistance, *pressed, start, contact.axis, contact.surface, sliding)
     forces = contact.axis, contact.surface, contact.basis, near, n, sliding.on_riser
-    spread(*forces, out.end_q, top.rows, border.residual, contact.touched.met)
+    spread(*forces, out.end_q, top.rows, border.residual, contact.touched.newly_loaded)
 
 
 @add_contact_tangent.of(SoilFrictionData)
@@ -181,8 +181,8 @@ def _friction_tangent(
     part: SoilFrictionData, top: TopMotion, at: Configuration, K: Array, border: Border
 ) -> None:
     contact, n = part.contact, part.contact.touched.counts[POINTS]
-    found, pipe = contact.pressed, (contact.axis, contact.surface)
-    near, pressed = first_of(found.near, n), (found.force[:n], found.slope[:n])
+    workspace, pipe = contact.pressed, (contact.axis, contact.surface)
+    near, pressed = first_of(workspace.near, n), (workspace.force[:n], workspace.slope[:n])
     pairs, forms = paired(near, K.shape[0]), gap_forms(*pipe, near, contact.basis)[0]
     place = (part.q, top.accepted), *pipe, contact.basis
     by_dofs = friction_tangents(part.resistance, near, *pressed, *place, forms, pairs, part.points, at.P)

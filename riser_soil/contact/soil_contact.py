@@ -43,8 +43,8 @@ class SoilContact(RiserContact):
     """Base of the frictionless penalty contacts between riser and soil, in group E.
 
     Their tangent has a block for each pair of a node or element of the riser and a facet of the soil's surface. Its
-    pattern holds the candidate pairs, which may come to touch; the line solver looks at no others. outgrown: a pair has
-    touched that had no place in the pattern and was left out there, not in the residual.
+    pattern has the candidate pairs, which may come to touch; the line solver looks at no others. outgrown: a pair has
+    touched that has no place in the pattern, so that its tangent is missing, not its residual.
 
     line: the riser's field; the rank where it is active evaluates contact, and holds the surface. A `place` is what the
     contact knows of the riser: its nodes, or its axis.
@@ -91,8 +91,8 @@ class SoilContact(RiserContact):
 
     @abstractmethod
     def kernel_data(self, deformed: Array, touched: Touched) -> Any:
-        """For the line solver, see `on_condensed_soil`; deformed (np, 3): where it writes the surface's points [m],
-        touched: where it writes what it finds.
+        """Kernel data for the line solver. deformed (np, 3): where it writes the surface's points [m], touched: where
+        it writes the outcome.
         """
 
     @abstractmethod
@@ -102,7 +102,7 @@ class SoilContact(RiserContact):
 
     @abstractmethod
     def place_in(self, data: Any) -> Any:
-        """Where the line solver has found the riser last."""
+        """Where the riser was in the line solver's last trial."""
 
     @abstractmethod
     def watch(self, data: Any, places: Sequence[Any], pairs: CandidatePairs, slack: float) -> Any:
@@ -111,14 +111,12 @@ class SoilContact(RiserContact):
         """
 
     def with_room(self, data: Any) -> Any:
-        """The kernel data with room for more points, where the last trial has found too little; all of them have room
-        by default.
-        """
+        """The kernel data with room for more points, where the last trial had too little; by default all have room."""
         return data
 
     @abstractmethod
     def adopt(self, state: State, data: Any) -> None:
-        """Take over what the line solver has found at a state."""
+        """Adopt the line solver's evaluation of contact at a state."""
 
     @abstractmethod
     def clearance(self, state: State) -> Array:
@@ -138,7 +136,7 @@ class SoilContact(RiserContact):
 
     @abstractmethod
     def stretch(self, state: State) -> float:
-        """Largest area of a facet that presses, seen square to it as it was, over that at first; 1 where none does."""
+        """Largest area of a facet that presses, projected along its first normal, over its first area; 1 of none."""
 
     def blocks(self) -> dict[str, MatrixBlock]:
         """Dofs of a node or element and of a facet, candidate pair by pair."""
@@ -170,22 +168,22 @@ class SoilContact(RiserContact):
         ψ is convex in the gap, so this is ≥ 0 where the gap is linear in the step, as where soil and riser move
         vertically. Sliding along a sloping ground adds terms of second order in the sliding distance, of either sign.
         """
-        stored, taken = self.potential(before) if self._stored is None else self._stored, self.work_to(after)
-        lost = taken - self.potential(after) + stored
-        return Work(dissipated=lost, by_scheme=self.lost_by_scheme(taken, lost, before, after))
+        stored, extracted = self.potential(before) if self._stored is None else self._stored, self.work_to(after)
+        lost = extracted - self.potential(after) + stored
+        return Work(dissipated=lost, by_scheme=self.lost_by_scheme(extracted, lost, before, after))
 
-    def lost_by_scheme(self, taken: float, lost: float, before: State, after: State) -> float:
-        """The time scheme's share [J] of what is lost in a step; taken: what the forces took."""
+    def lost_by_scheme(self, extracted: float, lost: float, before: State, after: State) -> float:
+        """The time scheme's share [J] of what is lost in a step; extracted: work of the forces in it [J]."""
         return lost
 
     def commit(self, state: State) -> None:
-        """Keep what is stored; what the step has missed on its way is of no concern to the next."""
+        """Keep the energy stored; pairs missed on the way do not matter to the next step."""
         self._missed = CandidatePairs.none(len(self._soil.facets))
         self._stored = self.potential(state)
 
     def places(self, values: Array, on_line: IntArray, facet: IntArray) -> IntArray:
-        """Where the pattern has pairs (m,), and the matrix its `values`, to be filled; -1, which is noted, where it has
-        not.
+        """Places (m,) of pairs in the pattern, and so in the matrix's `values`, which are to be filled; -1 of pairs
+        that the pattern does not have, which are noted.
         """
         patch = self._present_patch()
         if len(values) != len(patch.pairs):
@@ -194,8 +192,8 @@ class SoilContact(RiserContact):
         missed = places < 0
         if missed.any():
             self.outgrown = True
-            found = CandidatePairs.of(len(self._soil.facets), on_line[missed], facet[missed])
-            self._missed = self._missed.joined(found)
+            outside = CandidatePairs.of(len(self._soil.facets), on_line[missed], facet[missed])
+            self._missed = self._missed.joined(outside)
         patch.filled[places[~missed]] = True
         return places
 
@@ -235,7 +233,7 @@ class SoilContact(RiserContact):
 
     @property
     def along(self) -> PointsAlong:
-        """The nodes."""
+        """Points along the line: its nodes."""
         return PointsAlong(self.line.arc, self.line.tributary_length)
 
     def contact_along_line(self, state: State) -> tuple[Array, Array]:
@@ -264,8 +262,7 @@ class SoilContact(RiserContact):
         return landing_predictor(guess, heights, present, guessed, self.law.start)
 
     def state(self) -> Saved:
-        """The pattern and the energy stored: others, as wide as need be or found anew, are the same but to round-off.
-        """
+        """The pattern and the energy stored, lest a run that is resumed differ by round-off."""
         if not self.active:
             return {}
         stored = {} if self._stored is None else {"stored": np.array(self._stored)}
@@ -278,5 +275,5 @@ class SoilContact(RiserContact):
 
 
 @covered_by.of(Cover)
-def _by_surface(cover: Cover, x: Vec, known: int) -> int:
-    return facet_below(cover, x[0], x[1], known)
+def _by_surface(cover: Cover, x: Vec, previous: int) -> int:
+    return facet_below(cover, x[0], x[1], previous)

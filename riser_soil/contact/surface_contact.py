@@ -53,7 +53,7 @@ AROUND = 0.25  # radii around the pipe in which facets are candidates: each of t
 
 @dataclass(frozen=True, eq=False)
 class SurfaceState:
-    """Riser and soil at a state, and what touches."""
+    """Contact evaluated at a state: the riser there, and the points of the soil's surface that press on it."""
 
     trial: Trial
     pressed: PressedPoints
@@ -105,12 +105,10 @@ class SurfaceContact(SoilContact):
         self._start: tuple[Array, Array, Start] | None = None  # for which accepted places of line and soil it holds
 
     def evaluate(self, state: State) -> SurfaceState:
-        """Riser and soil at a state. What the trial keeps does not hold the trial: Python would find so large a cycle
-        late.
-        """
+        """Contact at a state. What the trial caches does not refer to it: Python would free such a cycle late."""
         trial = self.line.trial(state)
-        found: PressedPoints = trial.once((self, "surface"), self._evaluate)
-        return SurfaceState(trial, found)
+        pressed: PressedPoints = trial.once((self, "surface"), self._evaluate)
+        return SurfaceState(trial, pressed)
 
     def _evaluate(self, trial: Trial) -> PressedPoints:
         deformed = self._soil.deformed(trial.state)
@@ -118,7 +116,7 @@ class SurfaceContact(SoilContact):
         within = self._acts_within
         elements, facets = touching_boxes(*boxes(axis, within, within), deformed, self._soil.corners)
         near = near_points(axis, surface, elements, facets, within)
-        return PressedPoints.of(axis, surface, self._basis, near, self.law.kernel_data, self._memory.kept)
+        return PressedPoints.of(axis, surface, self._basis, near, self.law.kernel_data, self._memory.history)
 
     @property
     def _acts_within(self) -> float:
@@ -127,28 +125,29 @@ class SurfaceContact(SoilContact):
 
     def start(self) -> Start:
         """Where the present step starts; kept until line or soil are accepted elsewhere."""
-        known, here = self._start, (self.line.x, self._soil.committed)
-        if known is None or known[0] is not here[0] or known[1] is not here[1]:
+        cached, here = self._start, (self.line.x, self._soil.committed)
+        if cached is None or cached[0] is not here[0] or cached[1] is not here[1]:
             placed = self.line.once(LineTrials).then
             placed.move(self.accepted)
-            known = self._start = *here, (self._in_space(placed.at.q), self._soil.settled)
-        return known[2]
+            cached = self._start = *here, (self._in_space(placed.at.q), self._soil.settled)
+        return cached[2]
 
     def kernel_data(self, deformed: Array, touched: Touched) -> SurfaceContactData:
         axis = Axis(np.zeros((self.line.length.size, 4, 3)), self.line.length, self._radius)
         none, box = np.empty(0, dtype=np.int64), np.zeros((self.line.length.size, 3))
         watched = Watched(PairsByFacet(none, none, none), box, box, 0.0)
         pipe, law = (axis, self.surface(deformed), self._basis, self.line.origin), self.law.kernel_data
-        return SurfaceContactData(*pipe, law, self._memory.kept, np.zeros(1), watched, self._room(FEW), touched)
+        return SurfaceContactData(*pipe, law, self._memory.history, np.zeros(1), watched, self._room(FEW), touched)
 
     def _room(self, count: int) -> PressWorkspace:
-        """For so many points that touch."""
+        """Workspace for so many points that touch."""
         return press_workspace(points_workspace(count), len(self.law.columns))
 
     def at_start(self, data: SurfaceContactData) -> SurfaceContactData:
         """The kernel data with the gap within which the law may act in a step that starts here, and the history."""
         data.reach[0] = self._acts_within
-        return data if data.kept is self._memory.kept else data._replace(kept=self._memory.kept)
+        history = self._memory.history
+        return data if data.history is history else data._replace(history=history)
 
     def place(self, state: State) -> Axis:
         """The riser's axis."""
@@ -183,8 +182,8 @@ class SurfaceContact(SoilContact):
         return data._replace(pressed=self._room(2 * len(data.pressed.force)))
 
     def adopt(self, state: State, data: SurfaceContactData) -> None:
-        found = data.touched.counts[POINTS], float(data.touched.energy[0]), data.pressed
-        pressed = PressedPoints.kept(data.axis, data.surface, self._basis, *found)
+        n, energy = data.touched.counts[POINTS], float(data.touched.energy[0])
+        pressed = PressedPoints.copied(data.axis, data.surface, self._basis, n, energy, data.pressed)
         self.line.trial(state).once((self, "surface"), lambda _: pressed)
 
     def surface(self, deformed: Array) -> Surface:
@@ -200,7 +199,7 @@ class SurfaceContact(SoilContact):
         return Axis(self._in_space(trial.q), self.line.length, self._radius)
 
     def _in_space(self, q: Array) -> Array:
-        """What q (ne, 4, d) of the elements is in global axes (ne, 4, 3)."""
+        """q (ne, 4, d) of the elements in global axes (ne, 4, 3)."""
         out = np.empty((len(q), 4, 3))
         write_axis(self.line.origin, self._basis, q, out)
         return out
@@ -220,32 +219,34 @@ class SurfaceContact(SoilContact):
 
     def element_forces(self, state: State) -> Array:
         """Element residual (ne, 2 ndof)."""
-        found = self.evaluate(state)
-        return found.on_elements(found.pressed.spread(found.pressed.on_riser)[0])
+        contact = self.evaluate(state)
+        return contact.on_elements(contact.pressed.spread(contact.pressed.on_riser)[0])
 
     def residual(self, state: State, forces: Forces) -> None:
         """Add dψ/du: minus the force on the riser, minus the force on the soil."""
-        found = self.evaluate(state)
-        self.add_residual(found, found.pressed.on_riser, forces)
+        contact = self.evaluate(state)
+        self.add_residual(contact, contact.pressed.on_riser, forces)
 
-    def add_residual(self, found: SurfaceState, f: Array, forces: Forces) -> None:
+    def add_residual(self, contact: SurfaceState, f: Array, forces: Forces) -> None:
         """Add the residual of forces f (n, 3) on the pipe at the points."""
-        F, soil = found.pressed.spread(f)
-        self.line.scatter(found.on_elements(F), forces.end)
+        F, soil = contact.pressed.spread(f)
+        self.line.scatter(contact.on_elements(F), forces.end)
         forces.end[self._soil.part] += soil.ravel()
 
     def tangent(self, state: State, weights: Weights, values: dict[str, Array]) -> None:
-        """Add d²ψ/du², unweighted: contact stands at the end of the step."""
-        found = self.evaluate(state)
-        at, P = found.pressed, found.trial.turn.P
+        """Add d²ψ/du², unweighted: contact forces are those at the end of the step."""
+        contact = self.evaluate(state)
+        at, P = contact.pressed, contact.trial.turn.P
         by_dofs = pair_tangents(*at.forms, at.force, at.slope, at.pairs, P)
-        self.add_tangent(values, found, by_dofs, at.on_riser)
+        self.add_tangent(values, contact, by_dofs, at.on_riser)
 
-    def add_tangent(self, values: dict[str, Array], found: SurfaceState, by_dofs: Array, f: Array) -> None:
-        """Add the derivative of the residual of forces f (n, 3) on the pipe; by_dofs (m, nr, nr): of pairs, P held."""
-        pairs: Pairs = found.pressed.pairs
+    def add_tangent(self, values: dict[str, Array], contact: SurfaceState, by_dofs: Array, f: Array) -> None:
+        """Add the derivative of the residual of forces f (n, 3) on the pipe; by_dofs (m, nr, nr): of pairs, at constant
+        P.
+        """
+        pairs: Pairs = contact.pressed.pairs
         add_blocks(values[SOIL], self.places(values[SOIL], pairs.element, pairs.facet), by_dofs)
-        found.trial.add_turning(values[self.line.name], 1.0, found.pressed.spread(f)[0])
+        contact.trial.add_turning(values[self.line.name], 1.0, contact.pressed.spread(f)[0])
 
     def potential(self, state: State) -> float:
         return self.evaluate(state).pressed.potential
@@ -254,11 +255,11 @@ class SurfaceContact(SoilContact):
         pressed = self.evaluate(state).pressed
         return pressed.work(pressed.on_riser, self.start())
 
-    def lost_by_scheme(self, taken: float, lost: float, before: State, after: State) -> float:
-        """With suction, what the force took beyond the work of the law along the step [J]; else all that is lost."""
+    def lost_by_scheme(self, extracted: float, lost: float, before: State, after: State) -> float:
+        """With suction, the work of the forces less that of the law along the step [J]; else all that is lost."""
         if not self.law.columns:
             return lost
-        return taken - self._by_law(self.evaluate(before).pressed.points, self.evaluate(after).pressed.points)
+        return extracted - self._by_law(self.evaluate(before).pressed.points, self.evaluate(after).pressed.points)
 
     def _by_law(self, first: NearPoints, last: NearPoints) -> float:
         """Work [J] of the law along a step, at points that touch before or after it."""
@@ -324,7 +325,7 @@ class SurfaceContact(SoilContact):
         return self.soil_per_length(pressed.points, pressed.on_riser)
 
     def soil_per_length(self, points: NearPoints, f: Array) -> Array:
-        """By length of the riser (nn, 3) [N/m]: of forces f (n, 3) on the pipe at the points."""
+        """Force on the soil by length of the riser (nn, 3) [N/m], from forces f (n, 3) on the pipe at the points."""
         return np.asarray(-self.at_nodes(points, f) / self.line.tributary_length[:, None])
 
     def stretch(self, state: State) -> float:
@@ -334,20 +335,20 @@ class SurfaceContact(SoilContact):
         return self._soil.stretch(pressed.surface.deformed, pressed.points.facet)
 
     def gaps(self, points: Array, state: State) -> Array:
-        """Between the pipe at a state and points (n, 3) [m]."""
+        """Gaps (n,) between the pipe at a state and points (n, 3) [m]."""
         return gaps_of(self.axis(self.line.trial(state)), points)[0]
 
     def brought_to(self, points: Array, gaps: Array, state: State) -> Array:
         """Points (n, 3), those near the pipe at given gaps (n,) from it [m]."""
         near, out = gaps < AROUND * self.radius, points.copy()
         if near.any():
-            found, away = gaps_of(self.axis(self.line.trial(state)), points[near])
-            out[near] += (gaps[near] - found)[:, None] * away
+            present, away = gaps_of(self.axis(self.line.trial(state)), points[near])
+            out[near] += (gaps[near] - present)[:, None] * away
         return out
 
     def surface_renewed(self, before: Array, memories: Sequence[PointMemory] = ()) -> None:
-        """The soil's surface has other nodes than those (np, 3) before: what is remembered of points, here and by
-        others, goes over to those that lie there now.
+        """The soil's surface has other nodes than those (np, 3) before: the history of points, here and in other
+        memories, goes over to the points that lie there now.
         """
         settled, here = self._soil.settled, self.line.trial(self.accepted)
         axis = self.axis(here)

@@ -6,12 +6,12 @@ from typing import Any, NamedTuple
 
 from riser_soil.contact.closest_point import Axis
 from riser_soil.contact.cylinder_gap import gap_forms
-from riser_soil.contact.integration_points import KeptRows
+from riser_soil.contact.integration_points import PointHistory
 from riser_soil.contact.near_points import PairsByFacet, Surface, boxes, fill_near, first_of
 from riser_soil.contact.on_condensed_soil import (
     FULL,
-    LEFT,
     POINTS,
+    UNWATCHED,
     TopMotion,
     Touched,
     add_block,
@@ -44,8 +44,8 @@ class Watched(NamedTuple):
 
 class SurfaceContactData(NamedTuple):
     """A `SurfaceContact` on condensed soil: axis and surface, with workspace for q and for the present points; basis
-    (3, d), origin (3,): of the line. law: its kernel data, and what is kept of its points; within a gap of `reach` (1,)
-    [m] it may act. watched: what may touch. pressed, touched: what was found last, with room for more points.
+    (3, d), origin (3,): of the line. law: its kernel data; history: of its points; within a gap of `reach` (1,) [m] it
+    may act. watched: what may touch. pressed, touched: as evaluated last, with room for more points.
     """
 
     axis: Axis
@@ -53,7 +53,7 @@ class SurfaceContactData(NamedTuple):
     basis: Array
     origin: Array
     law: Any
-    kept: KeptRows
+    history: PointHistory
     reach: Array
     watched: Watched
     pressed: PressWorkspace
@@ -67,12 +67,12 @@ def _surface_contact(
     axis, surface, pressed, counts, reach = part.axis, part.surface, part.pressed, part.touched.counts, part.reach[0]
     write_axis(part.origin, part.basis, at.q, axis.q)
     n, room = fill_near(axis, surface, part.watched.pairs, reach, pressed.near), len(pressed.force)
-    part.touched.met[:] = False
-    counts[FULL], counts[LEFT] = n > room, leaves(axis, part.watched, reach)
-    n, part.touched.energy[0] = find_pressed(part.law, part.kept, axis, surface, min(n, room), pressed)
+    part.touched.newly_loaded[:] = False
+    counts[FULL], counts[UNWATCHED] = n > room, leaves(axis, part.watched, reach)
+    n, part.touched.energy[0] = find_pressed(part.law, part.history, axis, surface, min(n, room), pressed)
     counts[POINTS] = n
-    given = axis, surface, part.basis, pressed.near, n, pressed.on_riser
-    spread(*given, out.end_q, top.rows, border.residual, part.touched.met)
+    forces = axis, surface, part.basis, pressed.near, n, pressed.on_riser
+    spread(*forces, out.end_q, top.rows, border.residual, part.touched.newly_loaded)
 
 
 @njit

@@ -88,14 +88,14 @@ def touchdown_points(intervals: Sequence[ContactInterval]) -> int:
 def merged(intervals: Sequence[ContactInterval], near: float) -> list[ContactInterval]:
     """Contact with several grounds by the arc length, as one where a ground ends and another begins within `near` [m].
     """
-    found: list[ContactInterval] = []
+    joined: list[ContactInterval] = []
     for this in sorted(intervals):
-        if found and this.start - found[-1].end <= near:
-            last = found[-1]
-            found[-1] = last._replace(end=max(last.end, this.end), to_end=last.to_end or this.to_end)
+        if joined and this.start - joined[-1].end <= near:
+            last = joined[-1]
+            joined[-1] = last._replace(end=max(last.end, this.end), to_end=last.to_end or this.to_end)
         else:
-            found.append(this)
-    return found
+            joined.append(this)
+    return joined
 
 
 def contact_intervals(arc: Array, share: Array, clearance: Array, force: Array) -> list[list[ContactInterval]]:
@@ -106,19 +106,20 @@ def contact_intervals(arc: Array, share: Array, clearance: Array, force: Array) 
     pushes. A gap that is no higher than the deepest penetration does not end a stretch: just behind the touchdown point
     a stiff bed lifts the riser off a little.
     """
-    found, whole = touching(clearance, force), float(np.cumsum(share)[-1])
-    from_start, to_end = found.first == 0, found.last == arc.size - 1
-    start, end = np.zeros(found.row.size), np.full(found.row.size, whole)
+    stretches, whole = touching(clearance, force), float(np.cumsum(share)[-1])
+    row, first, last = stretches
+    from_start, to_end = first == 0, last == arc.size - 1
+    start, end = np.zeros(row.size), np.full(row.size, whole)
     if (at := np.flatnonzero(~to_end)).size:
-        own = Stretches(*(each[at] for each in found))
+        own = Stretches(row[at], first[at], last[at])
         end[at] = _leaving(arc, share, clearance, force, own)
     if (at := np.flatnonzero(~from_start)).size:
-        own = Stretches(found.row[at], *(arc.size - 1 - each[at] for each in (found.last, found.first)))
+        own = Stretches(row[at], arc.size - 1 - last[at], arc.size - 1 - first[at])
         backwards = (whole - arc[::-1], share[::-1], clearance[:, ::-1], force[:, ::-1])
         start[at] = whole - _leaving(*backwards, own)
     intervals: list[list[ContactInterval]] = [[] for _ in clearance]
-    for row, *ends in zip(as_list(found.row), *map(as_list, (start, end, from_start, to_end)), strict=True):
-        intervals[row].append(ContactInterval(*ends))
+    for state, *ends in zip(*map(as_list, (row, start, end, from_start, to_end)), strict=True):
+        intervals[state].append(ContactInterval(*ends))
     return intervals
 
 
@@ -131,11 +132,11 @@ def touching(clearance: Array, force: Array) -> Stretches:
     gaps = np.flatnonzero(~begins & (points != np.roll(points, 1) + 1))
     begins[gaps] = _highest(clearance, rows[gaps], points[gaps - 1], points[gaps]) > -clearance[rows[gaps]].min(axis=1)
     first = np.flatnonzero(begins)
-    found = Stretches(rows[first], points[first], points[np.append(first[1:], rows.size) - 1])
+    stretches = Stretches(rows[first], points[first], points[np.append(first[1:], rows.size) - 1])
     presses = np.logical_or.reduceat(force[rows, points] != 0.0, first)
     somewhere = np.zeros(len(clearance), dtype=bool)
-    somewhere[found.row[presses]] = True
-    return Stretches(*(each[presses | ~somewhere[found.row]] for each in found))
+    somewhere[stretches.row[presses]] = True
+    return Stretches(*(each[presses | ~somewhere[stretches.row]] for each in stretches))
 
 
 def _highest(clearance: Array, rows: IntArray, before: IntArray, behind: IntArray) -> Array:
@@ -145,33 +146,33 @@ def _highest(clearance: Array, rows: IntArray, before: IntArray, behind: IntArra
     return np.maximum.reduceat(np.append(clearance, 0.0), bounds)[::2] if rows.size else np.empty(0)
 
 
-def _leaving(arc: Array, share: Array, clearance: Array, force: Array, found: Stretches) -> Array:
+def _leaving(arc: Array, share: Array, clearance: Array, force: Array, stretches: Stretches) -> Array:
     """Arc lengths (k,) [m] at which stretches end, by the forces in them."""
-    points = int(found.last.max()) + 1  # beyond them nothing is pushed
+    points = int(stretches.last.max()) + 1  # beyond them nothing is pushed
     some = max(1, AT_ONCE // points)
-    parts = [Stretches(*(each[k : k + some] for each in found)) for k in range(0, found.row.size, some)]
+    parts = [Stretches(*(each[k : k + some] for each in stretches)) for k in range(0, stretches.row.size, some)]
     d, middle = np.concatenate([_rigid_end(arc, share, force[:, :points], part) for part in parts], axis=1)
-    end = _edge(arc, clearance, found)
+    end = _edge(arc, clearance, stretches)
     return np.where(np.isnan(middle), end, np.minimum(np.fmax(d, middle), end))
 
 
-def _rigid_end(arc: Array, share: Array, force: Array, found: Stretches) -> Array:
+def _rigid_end(arc: Array, share: Array, force: Array, stretches: Stretches) -> Array:
     """End d of the rigid contact, and the middle of the forces (2, k) [m], which is nan where nothing presses.
 
     force (nt, m): at the first m points, among them all of the stretches.
     """
     m = force.shape[1]
-    number, own = np.arange(m), force[found.row]
-    pushing = np.where((number >= found.first[:, None]) & (number <= found.last[:, None]), own, 0.0)
+    number, own, last = np.arange(m), force[stretches.row], stretches.last[:, None]
+    pushing = np.where((number >= stretches.first[:, None]) & (number <= last), own, 0.0)
     near, weight, middle = _layer(arc[:m], share[:m], pushing)
-    near *= number <= found.last[:, None]
+    near *= number <= last
     f0 = _resting(weight, pushing, own.argsort(axis=1, kind="stable"))
-    return np.stack([_equivalent(arc, share, near, pushing, f0, found.last), middle])
+    return np.stack([_equivalent(arc, share, near, pushing, f0, stretches.last), middle])
 
 
-def _edge(arc: Array, clearance: Array, found: Stretches) -> Array:
+def _edge(arc: Array, clearance: Array, stretches: Stretches) -> Array:
     """Arc lengths (k,) at which the clearance vanishes beyond the last point in contact."""
-    row, last = found.row, found.last
+    row, last = stretches.row, stretches.last
     behind = np.minimum(last + 1, arc.size - 1)
     here, there = clearance[row, last], clearance[row, behind]
     leaves = (here < 0.0) & np.isfinite(there) & (behind > last)
@@ -205,7 +206,7 @@ def _layer(arc: Array, share: Array, force: Array) -> tuple[Array, Array, Array]
 
 
 def _rise(x: Array) -> Array:
-    """From 0 to 1 over 0 < x < 1, twice continuously differentiable."""
+    """Smooth step from 0 to 1 over 0 < x < 1, twice continuously differentiable."""
     x = np.clip(x, 0.0, 1.0)
     return np.asarray(x * x * x * (10.0 - x * (15.0 - 6.0 * x)))
 
@@ -223,8 +224,8 @@ def _resting(weight: Array, force: Array, rising: IntArray) -> Array:
 
 
 def _equivalent(arc: Array, share: Array, near: Array, force: Array, f0: Array, last: IntArray) -> Array:
-    """d (k,): see the module's text. The sums go to the line's end, beyond the last points with no force; tau = 2 E1/(R
-    + E0) is the same, where that is safe.
+    """End d (k,) [m] of the rigid contact that is equivalent, by the equations of the module's text. The sums go to the
+    line's end, beyond the last points with no force; tau = 2 E1/(R + E0) is the same, where that is safe.
     """
     length, m = float(np.cumsum(share)[-1]), near.shape[1]
     lever = length - arc

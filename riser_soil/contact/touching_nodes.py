@@ -13,9 +13,9 @@ import numpy as np
 
 from riser_soil.contact.facets import gap_forms, height_at, penalty_hessian, within_line
 from riser_soil.contact.on_condensed_soil import (
-    BEYOND,
-    LEFT,
     POINTS,
+    UNREACHED,
+    UNWATCHED,
     TopMotion,
     Touched,
     add_block,
@@ -36,8 +36,8 @@ ASPECT = 1.618
 class ContactPoints(NamedTuple):
     """Points fixed to nodes that carry the nodes' contact forces.
 
-    node (n,). offset (n, 2): horizontal distance from the node [m]. length (n,): riser length that a point
-    stands for [m].
+    node (n,). offset (n, 2): horizontal distance from the node [m]. length (n,): riser length that belongs to
+    a point [m].
     """
 
     node: IntArray
@@ -55,8 +55,8 @@ class ContactPoints(NamedTuple):
 
 
 class PointsBelow(NamedTuple):
-    """Where contact points (n,) stand: soil facet below, −1 where there is none or none is looked for; place on it (n,
-    2); gap, the height [m] of the riser's underside over the ground, inf without a facet.
+    """Soil below contact points (n,): facet, −1 where there is none or none is looked for; place on it (n, 2); gap, the
+    height [m] of the riser's underside over the ground, inf without a facet.
     """
 
     facet: IntArray
@@ -102,8 +102,8 @@ class TouchingNodes:
     @cached_property
     def forms(self) -> tuple[Array, Array]:
         """Derivatives of the gap by z: linear forms (n, 5, nz) and H (n, 2, 2), see `facets.gap_forms`."""
-        found: tuple[Array, Array] = touching_forms(self.points, self.facets, self.surface, self.basis)
-        return found
+        forms: tuple[Array, Array] = touching_forms(self.points, self.facets, self.surface, self.basis)
+        return forms
 
     @cached_property
     def gradient(self) -> Array:
@@ -112,9 +112,9 @@ class TouchingNodes:
 
     def add_residual(self, nodal: Array, soil: Array) -> None:
         """Add dψ/du to the residual of the line's nodes (nn, ndof), and to that of the soil's surface (3 np,)."""
-        rows, met = np.arange(soil.size).reshape(-1, 3), np.empty(0, dtype=np.bool_)  # all nodes are reached
+        rows, none = np.arange(soil.size).reshape(-1, 3), np.empty(0, dtype=np.bool_)  # all nodes are reached
         forms, d = self.forms[0], self.basis.shape[1]
-        spread_touching(self.points, forms, self.facets, d, nodal, rows, soil, met)
+        spread_touching(self.points, forms, self.facets, d, nodal, rows, soil, none)
 
     @property
     def hessian(self) -> Array:
@@ -124,8 +124,8 @@ class TouchingNodes:
 
 @njit
 def find_below(x: Array, radius: Array, points: ContactPoints, level: float, cover: Cover, out: PointsBelow) -> None:
-    """Write where the points of nodes at x (nn, 3) stand whose undersides are below a level [m]. radius (nn,): [m] from
-    the axis to the line that touches.
+    """Write the soil below the points of nodes at x (nn, 3), of those whose undersides are below a level [m]. radius
+    (nn,): [m] from the axis to the line that touches.
     """
     for p in range(points.node.size):
         n = points.node[p]
@@ -178,10 +178,11 @@ def spread_touching(
     nodal: Array,
     rows: IntArray,
     residual: Array,
-    met: BoolArray,
+    newly_loaded: BoolArray,
 ) -> None:
     """Add the residual of what touches to that of the line's nodes (nn, ndof), d translations each, and to the soil's,
-    whose rows (np, 3) are given. Nodes of the soil that are not reached are marked in `met` (np,).
+    whose rows (np, 3) are given. Nodes of the soil that bear a force and are not reached are marked in `newly_loaded`
+    (np,).
     """
     for i in range(points.node.size):
         for j in range(d):
@@ -191,8 +192,8 @@ def spread_touching(
             row = rows[a, (k - d) % 3]
             if row >= 0:
                 residual[row] -= share
-            elif row == BEYOND and share != 0.0:
-                met[a] = True
+            elif row == UNREACHED and share != 0.0:
+                newly_loaded[a] = True
 
 
 class WatchedFacets(NamedTuple):
@@ -207,8 +208,8 @@ class WatchedFacets(NamedTuple):
 
 class NodeContactData(NamedTuple):
     """A `NodeContact` on condensed soil: origin (3,) and basis (3, d) of the line, radius (nn,) [m] and points; the
-    law; the soil's surface, and which of its facets may come to touch. What was found last: places x (nn, 3) of the
-    nodes [m], where all points stand, and what touches.
+    law; the soil's surface, and which of its facets may come to touch. As evaluated last: places x (nn, 3) of the nodes
+    [m], the soil below all points, and what touches.
     """
 
     origin: Array
@@ -242,15 +243,15 @@ def _node_contact(
     write_places(part.origin, part.basis, at.x, part.x)
     renew_boxes(cover, watched.facets)
     find_below(part.x, part.radius, part.points, watched.level, cover, part.below)
-    counts[LEFT] = 0
+    counts[UNWATCHED] = 0
     for facet in part.below.facet:
         if facet >= 0 and not watched.marked[facet]:
-            counts[LEFT] = 1
+            counts[UNWATCHED] = 1
     n, part.touched.energy[0] = find_touching(part.law, part.points, part.below, part.touching)
-    counts[POINTS], part.touched.met[:] = n, False
+    counts[POINTS], part.touched.newly_loaded[:] = n, False
     touching = first_touching(part.touching, n)
     forms, _ = touching_forms(touching, cover.facets, cover.points, part.basis)
-    soil = top.rows, border.residual, part.touched.met
+    soil = top.rows, border.residual, part.touched.newly_loaded
     spread_touching(touching, forms, cover.facets, part.basis.shape[1], out.end, *soil)
 
 

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 class AubenyBiscontin(SeabedLaw):
-    """Hysteretic law of Aubeny & Biscontin (2009); `riser_soil.seabed.aubeny_biscontin` tells what is certain of it."""
+    """Hysteretic law of Aubeny & Biscontin (2009); `riser_soil.seabed.aubeny_biscontin` says what is certain of it."""
 
     kind: Literal["aubeny-biscontin"] = Field(description="the law's name")
     su: Stress = Field(description="undrained shear strength at the surface [Pa]")

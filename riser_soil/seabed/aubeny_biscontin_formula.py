@@ -116,7 +116,7 @@ def _stiffness(law: AubenyBiscontinData, z: float) -> float:
 
 @njit
 def bounding_loop(law: AubenyBiscontinData, y1: float) -> BoundingLoop:
-    """That of ground whose deepest point so far is y1."""
+    """Bounding loop of ground whose deepest point so far is y1."""
     P1, _ = backbone(law, y1)
     k, firm = _stiffness(law, y1), 1.0 / (1.0 + law.omega)
     part = _part(law, k * y1 / max(P1, TINY))
@@ -168,14 +168,14 @@ def _of_riser(law: AubenyBiscontinData, z: float, past: AubenyBiscontinHistory) 
 
 @njit
 def _hyperbola(d: float, P: float, loop: BoundingLoop) -> tuple[float, float]:
-    """(5), and (2) from the deepest point."""
+    """Resistance by the hyperbola (5), which is (2) from the deepest point, and its slope."""
     give = 1.0 / loop.k + abs(d) * loop.bend
     return P + d / give, 1.0 / (loop.k * give**2)
 
 
 @njit
 def _lower(z: float, loop: BoundingLoop) -> tuple[float, float]:
-    """Edge (2) and (3), 0 above y3."""
+    """Resistance on the loop's lower edge, (2) and (3), and its slope; 0 above y3."""
     if z > loop.y2:
         return _hyperbola(min(z - loop.y1, 0.0), loop.P1, loop)
     return _s_curve(z, loop.y3, loop.y2, -loop.tension)
@@ -183,7 +183,7 @@ def _lower(z: float, loop: BoundingLoop) -> tuple[float, float]:
 
 @njit
 def _upper(law: AubenyBiscontinData, z: float, loop: BoundingLoop, lower: tuple[float, float]) -> tuple[float, float]:
-    """Edge (4), then the backbone."""
+    """Resistance on the loop's upper edge (4), then on the backbone, and its slope."""
     if z >= loop.y1:
         return backbone(law, z)
     again, slope = _s_curve(z, loop.y3, loop.y1, loop.P1)

@@ -1,6 +1,6 @@
 """The base of seabed laws: what a law does at one point is compiled, and chosen by the type of its kernel data.
 
-A law has kernels of `answer` and `may_act`, and all else goes through them. Of data without kernels numba says that
+A law has kernels of `answer` and `may_act`, and all else goes through them. For data without kernels numba says that
 there is no implementation for their type.
 """
 
@@ -31,8 +31,8 @@ def may_act(law: Any, penetration: float, history: Array) -> Any:
 
 
 class LawPoints(NamedTuple):
-    """Points (n,) that a law is asked at: penetration [m] at the end of a step, history (n, nh) at its beginning. The
-    answer: whether the law may act; force, slope and energy stored as in `SeabedResponse`, 0 where it may not; the
+    """Points (n,) at which a law is evaluated: penetration [m] at the end of a step, history (n, nh) at its beginning.
+    The answer: whether the law may act; force, slope and energy stored as in `SeabedResponse`, 0 where it may not; the
     history (n, nh) at the end of the step.
     """
 
@@ -87,7 +87,7 @@ class CompiledLaw:
         return SeabedResponse(force, slope, points.after.reshape(history.shape), stored)
 
     def answers(self, penetration: Array, history: Array) -> LawPoints:
-        """The answer at points (n,), of whatever shape they were."""
+        """The law's answer at points of any shape, in a row (n,)."""
         z = np.array(penetration, dtype=float).reshape(-1)
         points = law_points(z, np.array(history, dtype=float, order="C").reshape(z.size, history.shape[-1]))
         law, packed = Packed(self.kernel_data), Packed(points)

@@ -44,7 +44,7 @@ class Ground(ABC):
     @property
     @abstractmethod
     def kernel_data(self) -> Any:
-        """Its shape as compiled code takes it: a NamedTuple, whose type chooses the kernel of `distance_at`."""
+        """Its shape as compiled code reads it: a NamedTuple, whose type chooses the kernel of `distance_at`."""
 
     @property
     @abstractmethod

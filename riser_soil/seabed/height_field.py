@@ -31,7 +31,7 @@ class HeightFieldData(NamedTuple):
 
 @distance_at.of(HeightFieldData)
 def _distance_at(ground: HeightFieldData, x: Vec) -> tuple[float, Vec, Mat]:
-    """With g the slope of the height h, c = (1 + g.g)^(-1/2) and G_i = g_k h_ki:
+    """Distance and its derivatives; with g the slope of the height h, c = (1 + g.g)^(-1/2) and G_i = g_k h_ki:
     d = (z - h) c, c_i = -c^3 G_i, c_ij = 3 c^5 G_i G_j - c^3 (h_ki h_kj + g_k h_kij).
     """
     h, (p, q), (xx, xy, yy), (xxx, xxy, xyy, yyy) = _heights(ground, x[0], x[1])
@@ -153,7 +153,7 @@ class ProfileData(NamedTuple):
 
 @distance_at.of(ProfileData)
 def _distance_at_profile(ground: ProfileData, x: Vec) -> tuple[float, Vec, Mat]:
-    """With c = 1/sqrt(1 + h'^2), c' = -h' h'' c^3: d = (z - h) c."""
+    """Distance and its derivatives: d = (z - h) c with c = 1/sqrt(1 + h'^2), c' = -h' h'' c^3."""
     (ox, oy), (a, b) = ground.origin, ground.direction
     h, h1, h2, h3 = _heights_along(ground, (x[0] - ox) * a + (x[1] - oy) * b)
     over = x[2] - h

@@ -42,7 +42,7 @@ class NormalLaw(Protocol):
 
     @property
     def kernel_data(self) -> Any:
-        """Its constants as compiled code takes them: a NamedTuple, whose type chooses the law's kernels."""
+        """Its constants as compiled code reads them: a NamedTuple, whose type chooses the law's kernels."""
         ...
 
     @property
@@ -70,7 +70,7 @@ class NormalLaw(Protocol):
         ...
 
     def update(self, penetration: Array, history: Array) -> SeabedResponse:
-        """The answer to a step from a history to a penetration."""
+        """The response at the end of a step from a history at its beginning to a penetration."""
         ...
 
 

@@ -26,7 +26,7 @@ class SeabedPoints(NamedTuple):
     """Points near a seabed, and bound kernels over them. `find`: penetrations, -inf where something else lies on the
     ground, and the law's answer. `write_hessians`: of the distances of points where the law acts; none on flat ground.
     `set_all_aside`: penetrations of -inf beyond the law's reach, too. `keep`: the history after the step in the place
-    of that before it; none of a law without.
+    of that before it; none for a law without a history.
     """
 
     ground: GroundPoints
@@ -59,9 +59,9 @@ def seabed_points(
 
 
 @by_type
-def covered_by(cover: Any, x: Vec, known: int) -> Any:
-    """What lies on the ground below a place x, in global axes: its number, < 0 for nothing. known: what was found there
-    last, UNKNOWN at first.
+def covered_by(cover: Any, x: Vec, previous: int) -> Any:
+    """Number of what lies on the ground below a place x in global axes, < 0 for nothing. previous: the number there
+    last time, UNKNOWN at first.
     """
 
 

@@ -22,8 +22,8 @@ contact; in the abstract of the paper: hyperbolae for the three ways whose param
 Kmax. From memory: (2), (3) without s and d, the hyperbolic form of (4), and all default numbers. Own choices, where
 these sources leave a gap: the reference Pu(z) in (4), the exponential (5, 6) with s and c, and the bound (5) in uplift
 as well, which makes P vanish continuously at the surface and keeps the first half millimetre, where (2) is steeper than
-Pu Kmax/D, from giving back more than it took. c does not recover by small movements, for else a pipe that trembles
-could climb from a soft return back to the first curve and gain work in a cycle.
+Pu Kmax/D, from giving back more energy than it took. c does not recover by small movements, for else a pipe that
+trembles could climb from a soft return back to the first curve and gain work in a cycle.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ SHALLOW = 0.1  # z/D below which the bearing factor follows the square root
 
 
 class RandolphQuiggin(SeabedLaw):
-    """Hysteretic law of Randolph & Quiggin (2009); `riser_soil.seabed.randolph_quiggin` tells what is certain of it."""
+    """Hysteretic law of Randolph & Quiggin (2009); `riser_soil.seabed.randolph_quiggin` says what is certain of it."""
 
     kind: Literal["randolph-quiggin"] = Field(description="the law's name")
     su: Stress = Field(description="undrained shear strength at the surface [Pa]")

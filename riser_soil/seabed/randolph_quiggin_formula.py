@@ -160,7 +160,7 @@ def _of_clay(law: RandolphQuigginData, z: float, ultimate: Curve, past: Randolph
 
 @njit
 def _uplift(law: RandolphQuigginData, z: float, ultimate: Curve, past: RandolphQuigginHistory, decay: Curve) -> Curve:
-    """(3) with (6)."""
+    """Resistance in uplift by (3) with the decay (6), and its slope."""
     (Pu, dPu), (d, dd) = ultimate, decay
     suction, dsuction = -law.f_suc * past.s * d * Pu, -law.f_suc * past.s * (d * dPu + dd * Pu)
     S = max(past.P0 - suction, 0.0)
@@ -172,7 +172,7 @@ def _uplift(law: RandolphQuigginData, z: float, ultimate: Curve, past: RandolphQ
 
 @njit
 def _repenetration(law: RandolphQuigginData, z: float, ultimate: Curve, past: RandolphQuigginHistory) -> Curve:
-    """(4)."""
+    """Resistance in repenetration by (4), and its slope."""
     Pu, dPu = ultimate
     T, x = Pu - past.P0, law.per_metre * max(z - past.z0, 0.0)
     part = T / max(T + Pu * x, TINY)

@@ -1,7 +1,8 @@
 """Condensed soil beside lines in the line solver: its reached dofs are in the border, and contact couples both.
 
-Which pairs of an element and a facet may touch is found for boxes around the elements, and holds as long as these stay
-within; which dofs are reached, see `soil.condensed`. Where either doesn't do, the loop says so, and begins anew.
+Pairs of an element and a facet that may touch are those of boxes around the elements, as long as these stay within;
+which dofs are reached is chosen in `soil.condensed`. Where either choice proves too narrow, the step begins anew with
+wider ones.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.contact.condensed_contact import CondensedContact
-from riser_soil.contact.on_condensed_soil import BEYOND, FULL, HELD, LEFT, TopMotion, Touched
+from riser_soil.contact.on_condensed_soil import FULL, SUPPORTED, UNREACHED, UNWATCHED, TopMotion, Touched
 from riser_soil.contact.soil_contact import SoilContact
 from riser_soil.contact.soil_friction import SoilFriction
 from riser_soil.core.arrays import Array, BoolArray, IntArray
@@ -68,7 +69,7 @@ def add_norm_of_soil(soil: SoilData, border: Border, sums: Array) -> None:
 @njit
 def find_outgrown(touched: Touched, failure: IntArray) -> None:
     """Whether something touches what is not watched or not reached."""
-    if touched.counts[LEFT] or touched.counts[FULL] or touched.met.any():
+    if touched.counts[UNWATCHED] or touched.counts[FULL] or touched.newly_loaded.any():
         failure[0] = TOO_NARROW
 
 
@@ -112,7 +113,7 @@ def find_above(soil: SoilData, border: Border, above: BoolArray) -> None:
 
 
 def border_on_soil(system: System, beside: Sequence[Part]) -> MakeCoupling | None:
-    """What makes the border of lines on condensed soil, one of which touches it; None where a part has no kernels."""
+    """A maker of the border of lines on condensed soil, one of which touches it; None where a part has no kernels."""
     contact = next((part for part in beside if isinstance(part, SoilContact)), None)
     soil = next((part for part in beside if isinstance(part, CondensedSoil)), None)
     friction = next((part for part in beside if isinstance(part, SoilFriction)), None)
@@ -139,15 +140,15 @@ class SoilBorder(Coupling):
         self._top, self.parts = soil.top, (*touching.parts, soil)
         self._motion = Packed(self._motion_of(np.empty(0, dtype=np.int64)))
         self._dense, self._border, self._data = dense, dense.of[packed], Packed(_soil_data(0))
-        self._watched_at: Array = np.empty((0, 3))  # places of the top when what may touch was looked for
-        self._reached: Reached | None = None  # as there is room for
-        self._prescribed: Reached = soil.top.reached  # as the system has it
+        self._watched_at: Array = np.empty((0, 3))  # places of the top when the pairs were chosen
+        self._reached: Reached | None = None  # for which the border has room
+        self._prescribed: Reached = soil.top.reached  # when the system last prescribed the other dofs
 
     def _motion_of(self, nodes: IntArray) -> TopMotion:
         """How nodes (k,) of the top follow the reached dofs, from their present places."""
         top, reached = self._top, self._top.reached
-        rows = np.full(top.size, HELD, dtype=np.int64)
-        rows[top.unreached] = BEYOND
+        rows = np.full(top.size, SUPPORTED, dtype=np.int64)
+        rows[top.unreached] = UNREACHED
         rows[reached.dofs] = np.arange(len(reached.dofs))
         dofs = (3 * nodes[:, None] + np.arange(3)).ravel()
         by = np.ascontiguousarray(reached.compliance[dofs] @ reached.stiffness)
@@ -216,13 +217,13 @@ class SoilBorder(Coupling):
 
     def widen(self) -> None:
         """Reach and watch what the last trial touched."""
-        if self._touching.touched.met.any():
-            self._soil.note_newly_loaded(np.flatnonzero(self._touching.touched.met))
+        if (newly_loaded := np.flatnonzero(self._touching.touched.newly_loaded)).size:
+            self._soil.note_newly_loaded(newly_loaded)
             self._soil.rebuild(self._touching.contact.accepted)
         self._watch(tried=True)
 
     def _watch(self, tried: bool) -> None:
-        """Find what may touch near the accepted place, and near the last trial."""
+        """Watch what may touch near the accepted place and, if `tried`, near the last trial's."""
         if self._reached is not self._top.reached:
             self._reach(self._top.reached)
         nodes = self._touching.look(tried)
@@ -266,5 +267,5 @@ class SoilBorder(Coupling):
 
 
 def _soil_data(count: int) -> SoilData:
-    """For so many dofs."""
+    """Workspace for so many reached dofs."""
     return SoilData(np.zeros((count, count)), *np.zeros((3, count)))

@@ -23,5 +23,5 @@ def beyond(x: float, until: float = math.inf) -> Covering:
 
 
 @covered_by.of(BeyondData)
-def _beyond(cover: BeyondData, x: Vec, known: int) -> int:
+def _beyond(cover: BeyondData, x: Vec, previous: int) -> int:
     return 0 if cover.x < x[0] <= cover.until else -1

@@ -1,4 +1,4 @@
-"""Contact with condensed soil in the line solver, without the solver: what is noticed, and what the parts take over."""
+"""Contact with condensed soil in the line solver, without the solver: what is noticed, and what the parts adopt."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 from riser_soil.contact.condensed_contact import CondensedContact
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.node_contact import NodeContact
-from riser_soil.contact.on_condensed_soil import BEYOND, HELD, LEFT, TopMotion, add_contact
+from riser_soil.contact.on_condensed_soil import SUPPORTED, UNREACHED, UNWATCHED, TopMotion, add_contact
 from riser_soil.contact.soil_contact import CandidateRange, SoilContact
 from riser_soil.core.arrays import Array
 from riser_soil.core.part import Forces, State
@@ -22,14 +22,14 @@ NARROW = CandidateRange(above=0.02, around=0.02)
 
 
 class Beside:
-    """A riser's contact in the line solver, the soil's dofs all held or, where asked for, free and not reached."""
+    """A riser's contact in the line solver, the soil's dofs all supported or, as chosen, free and not reached."""
 
-    def __init__(self, method: str, reached: int = HELD) -> None:
+    def __init__(self, method: str, row: int = SUPPORTED) -> None:
         made = pipe_on_surface(sagging(angle=0.0), top("quad4"))
         self.made, self.contact = made, contact_of(made, method)
         self.touching = CondensedContact(self.contact, None)
         none, size = np.empty(0, dtype=np.int64), made.surface.points.shape
-        self._top = TopMotion(none, np.zeros((0, 0)), made.surface.points, np.full(size, reached))
+        self._top = TopMotion(none, np.zeros((0, 0)), made.surface.points, np.full(size, row))
         n, nodes = made.line.size, made.line.nodes
         square, beside = np.zeros((0, 0)), np.zeros((n, 0))
         self._border = Border(np.zeros(0), np.zeros(0), square, beside, beside, np.zeros(nodes, dtype=np.bool_))
@@ -52,7 +52,7 @@ class Beside:
 
     def leaves(self, *by: float) -> bool:
         self.at(self.moved(*by))
-        return bool(self.touching.touched.counts[LEFT])
+        return bool(self.touching.touched.counts[UNWATCHED])
 
 
 def contact_of(made: PipeOnSurface, method: str) -> SoilContact:
@@ -78,14 +78,14 @@ def test_what_comes_over_soil_that_is_not_watched_is_noticed(method: str) -> Non
 
 @METHODS
 def test_nodes_that_are_not_reached_are_noticed_where_they_bear_a_force(method: str) -> None:
-    for reached in (HELD, BEYOND):
-        case = Beside(method, reached)
+    for row in (SUPPORTED, UNREACHED):
+        case = Beside(method, row)
         case.at(case.made.state())
         forces = Forces.zeros(case.made.size)
         case.contact.residual(case.made.state(), forces)
         bearing = forces.end[case.made.surface.offset :].reshape(-1, 3).any(axis=1)
         assert bearing.any()
-        np.testing.assert_array_equal(case.touching.touched.met, bearing & (reached == BEYOND))
+        np.testing.assert_array_equal(case.touching.touched.newly_loaded, bearing & (row == UNREACHED))
 
 
 def readings(contact: SoilContact, state: State) -> list[Array]:
@@ -95,8 +95,8 @@ def readings(contact: SoilContact, state: State) -> list[Array]:
 
 
 @METHODS
-def test_the_part_takes_over_what_was_found_at_a_step_s_end(method: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The part has what it would find itself, and stays as it is when the solver goes on."""
+def test_the_part_adopts_the_evaluation_at_a_step_s_end(method: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The part has what its own evaluation gives, and stays as it is when the solver goes on."""
     case, other = Beside(method), Beside(method)
     end = case.moved(1e-3, 2e-3, -3e-3)
     case.at(end)
@@ -104,7 +104,7 @@ def test_the_part_takes_over_what_was_found_at_a_step_s_end(method: str, monkeyp
     case.at(case.moved(0.0, 0.0, -0.01))
     expected = readings(other.contact, end)
     monkeypatch.setattr(case.contact, {"node": "_find_touching", "surface": "_evaluate"}[method], None)
-    kept = readings(case.contact, end)
+    adopted = readings(case.contact, end)
     assert all(np.abs(values).max() > 0.0 for values in expected)
-    for values, wanted in zip(kept, expected, strict=True):
+    for values, wanted in zip(adopted, expected, strict=True):
         np.testing.assert_allclose(values, wanted, rtol=1e-9, atol=1e-12 * np.abs(wanted).max())

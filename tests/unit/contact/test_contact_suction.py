@@ -60,7 +60,7 @@ def test_force_is_continuous_and_slope_its_derivative(law: SuctionLaw, way: tupl
 @settings(max_examples=100, deadline=None)
 @given(path=st.lists(st.floats(-0.03, 0.01), min_size=2, max_size=30))
 def test_every_step_dissipates_unless_it_tears(law: SuctionLaw, path: list[float]) -> None:
-    """Sum over any path from the first touch: taken less stored is never negative, step by step."""
+    """Sum over any path from the first touch: work extracted less energy stored is never negative, step by step."""
     history, begin = after(law, np.array([0.0])), np.array([0.0])
     for z in np.array(path)[:, None]:
         answer = law.update(z, history)

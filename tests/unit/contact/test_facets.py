@@ -154,8 +154,8 @@ def test_compiled_code_knows_the_same_places_to_be_covered(nv: int) -> None:
         assert 0 < np.count_nonzero(places < 0) < len(xy)
         for place, wanted in zip(xy, places, strict=True):
             assert facet_below(cover, *place, -1) == wanted
-            for known in (0, wanted, len(facets) - 1):
-                assert (facet_below(cover, *place, known) >= 0) == (wanted >= 0)
+            for previous in (0, wanted, len(facets) - 1):
+                assert (facet_below(cover, *place, previous) >= 0) == (wanted >= 0)
 
 
 def test_a_long_facet_beside_many_small_ones_is_found() -> None:

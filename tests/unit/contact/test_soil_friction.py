@@ -160,9 +160,9 @@ def test_what_is_forgotten_goes_at_once() -> None:
     friction = with_friction(made)
     gc.disable()
     try:
-        kept = weakref.ref(friction.evaluate(made.state()).found.trial)
+        trial = weakref.ref(friction.evaluate(made.state()).contact.trial)
         made.line.forget()
-        assert kept() is None
+        assert trial() is None
     finally:
         gc.enable()
 
