@@ -185,7 +185,6 @@ def _solve_stage(
     if not isinstance(begin, State):
         _restore(system, begin)
     newton = solver_of(system, scheme_of(stage).dynamic, _settings_in(assembly, stage))
-    system.bind()
     with destroyed_together(assembly.comm, newton.destroy, system.destroy):
         try:
             run = _begin_run(assembly, stage, system, newton, begin, observer)

@@ -40,7 +40,7 @@ class Bound:
             self.entry = entry_of(kernel, TupleKind(tuple, tuple(each.kind for each in arguments)))
 
     def __call__(self) -> None:
-        if WANTED and not config.DISABLE_JIT:
+        if WANTED:
             compile_wanted()
         self._call(self.row, self.row)
 

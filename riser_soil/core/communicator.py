@@ -10,6 +10,7 @@ import importlib
 import importlib.util
 import os
 import sys
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Protocol
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 # How many processes were started together, by OpenMPI, MPICH and Intel MPI, MVAPICH, IBM's jsrun, Slurm's srun.
 SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE", "JSM_NAMESPACE_SIZE", "SLURM_STEP_NUM_TASKS")
 RANKS = ("PMIX_RANK", "PMI_RANK", "PALS_RANKID", "ALPS_APP_PE")  # of one among an unknown number
+NAP = 0.01  # s between two looks whether all are there
 
 
 class Communicator(Protocol):
@@ -141,6 +143,15 @@ def destroyed_together(comm: Communicator, *destroy: Callable[[], None]) -> Iter
     finally:
         for each in destroy if together else ():
             each()
+
+
+def wait_asleep(comm: Any) -> None:
+    """Wait for all ranks without keeping a core busy that others need; collective."""
+    if comm.size == 1:
+        return
+    barrier = comm.Ibarrier()
+    while not barrier.Test():
+        time.sleep(NAP)
 
 
 def sum_of(comm: Communicator, values: Sequence[float]) -> list[float]:

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 import numba
 import numpy as np
-from numba import types
+from numba import config, types
 
 from riser_soil.core.arrays import IntArray
 from riser_soil.core.compiled import OPTIONS, compiling, keeping, njit, place_of
@@ -94,8 +94,10 @@ def entry_of(kernel: Any, kind: TupleKind) -> Entry:
 
 def compile_wanted() -> None:
     """Compile all entries that are wanted, side by side, or read them from disk. Kernels of a module, which call the
-    same functions, are as a rule compiled by the same process.
+    same functions, are as a rule compiled by the same process. Nothing is where kernels run as Python.
     """
+    if config.DISABLE_JIT:
+        return
     entries = [*dict.fromkeys(WANTED)]
     WANTED.clear()
     missing = [each for each in sorted(entries, key=attrgetter("module")) if not each.place.filled]

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
-from riser_soil.core.communicator import Communicator, all_of, any_of, sum_of
+from riser_soil.core.communicator import Communicator, all_of, any_of, sum_of, wait_asleep
 from riser_soil.core.compiled import njit
+from riser_soil.core.entries import compile_wanted
 from riser_soil.core.matrix import Matrix, Patterns
 from riser_soil.core.numbering import Numbering
 from riser_soil.core.part import (
@@ -167,11 +168,13 @@ class System:
         self.matrix.assemble()
         self.clock.add("matrix", since)
 
-    def bind(self) -> None:
-        """Bind the kernels of all parts before one is called, so that those that are missing are compiled together."""
+    def compile(self) -> None:
+        """Compile what is missing of the kernels of all parts, together on all cores; collective."""
         for each in self._together(self._active):
             if isinstance(each, Compiled):
                 each.bind()
+        compile_wanted()
+        wait_asleep(self.comm)
 
     def _together(self, parts: Sequence[Part]) -> Sequence[Contribution]:
         """Some of the parts, those of each line evaluated together."""

@@ -23,7 +23,7 @@ BALANCED = 1e-4  # of the forces in play, that a balance under fixed lines may l
 
 
 class Newton:
-    """Solver of a system's steps by Newton's method. Create once a stage.
+    """Solver of a system's steps by Newton's method. Create once a stage; collective, as it compiles what is missing.
 
     Time steps of lines and bodies are the line solver's (`lines`) where it is given; what it leaves, and all other
     steps, are solved over the parts (`by_parts`). iterations: of all steps, those that failed included. at_equilibrium:
@@ -36,6 +36,7 @@ class Newton:
         self.at_equilibrium = False
         self.accepted: StepResults = StepResults(system) if lines is None else lines
         self._by_parts = StepIteration(system, settings) if lines is None else None
+        system.compile()
 
     @property
     def by_parts(self) -> StepIteration:
