@@ -147,7 +147,7 @@ def seabed_data(
     work = np.zeros(n if nh > 0 else 0)
     find_before = [*began.find, *written_work(law, here, began, work)]
     kernels, (find, before, nodal, hessians, aside, keeping) = spans(
-        here.find, find_before, at_nodes.find, here.write_hessians, here.set_all_aside, here.keep
+        here.find, find_before, at_nodes.write_penetrations, here.write_hessians, here.set_all_aside, here.keep
     )
     touching = TouchingStations(
         at,

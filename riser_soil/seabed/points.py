@@ -23,18 +23,24 @@ UNKNOWN = -1  # number of what lies on the ground below a place
 
 
 class SeabedPoints(NamedTuple):
-    """Points near a seabed, and bound kernels over them. `find`: penetrations, -inf where something else lies on the
-    ground, and the law's answer. `write_hessians`: of the distances of points where the law acts; none on flat ground.
-    `set_all_aside`: penetrations of -inf beyond the law's reach, too. `keep`: the history after the step in the place
-    of that before it; none for a law without a history.
+    """Points near a seabed, and bound kernels over them. `write_penetrations`: -inf where something else lies on the
+    ground. `answer`: the law's there. `write_hessians`: of the distances of points where the law acts; none on flat
+    ground. `set_all_aside`: penetrations of -inf beyond the law's reach, too. `keep`: the history after the step in the
+    place of that before it; none for a law without a history.
     """
 
     ground: GroundPoints
     law: LawPoints
-    find: list[Bound]
+    write_penetrations: list[Bound]
+    answer: list[Bound]
     write_hessians: list[Bound]
     set_all_aside: list[Bound]
     keep: list[Bound]
+
+    @property
+    def find(self) -> list[Bound]:
+        """Penetrations, and the law's answer there."""
+        return [*self.write_penetrations, *self.answer]
 
 
 def seabed_points(
@@ -52,10 +58,11 @@ def seabed_points(
         for each in (reach, math.inf)
     )
     weighed = [] if share is None else [Bound(weigh_answer, packed, Packed(share))]
-    find = [Bound(write_penetrations, of_ground, placed), *near, Bound(answer_acting, of_law, packed), *weighed]
+    penetrations = [Bound(write_penetrations, of_ground, placed), *near]
+    answer = [Bound(answer_acting, of_law, packed), *weighed]
     hessians = [] if ground.flat else [Bound(write_hessians, of_ground, placed, Packed(points.acts))]
     keep = [Bound(keep_history, of_law, packed)] if history.shape[-1] > 0 else []
-    return SeabedPoints(at, points, find, hessians, everywhere, keep)
+    return SeabedPoints(at, points, penetrations, answer, hessians, everywhere, keep)
 
 
 @by_type
