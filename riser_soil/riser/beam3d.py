@@ -260,10 +260,10 @@ def _vary(D: ElementStiffness, at: Shape, response: SpatialResponse, u: Vec, w1:
 
 @njit
 def tangent_workspace() -> Array:
-    """Workspace (2, 9, 9) for moves of an element, zero but for the blocks on the diagonal, and for what they
-    change.
+    """Workspace (2, 9, 16) for moves of an element, zero but for the blocks on the diagonal, and for what they change;
+    nine columns are used. Where rows are whole vectors of eight, compilers see that none of a move's is another's.
     """
-    return np.zeros((2, 9, 9))
+    return np.zeros((2, 9, 16))
 
 
 @njit
@@ -318,7 +318,7 @@ def _three(rows: Array, first: int, k: int) -> Vec:
 
 @njit
 def _spread(changes: Array, K: Array) -> None:
-    """Write K (12, 12) from changes (9, 9) of the force on node 2 and of both moments by u and both spins."""
+    """Write K (12, 12) from changes (9, 16) of the force on node 2 and of both moments by u and both spins."""
     for i in range(3):
         for k in range(3):
             for row, of in ((6, 0), (3, 3), (9, 6)):
