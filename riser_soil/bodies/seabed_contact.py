@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.bodies.body import MovingBody, Posture, add_tangent_at, add_to_dofs, posture, way_by_increments
-from riser_soil.contact.along_step import written_work
+from riser_soil.contact.along_step import seabed_step
 from riser_soil.contact.seabed_kernels import by_position
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.bound import Span, call_span, spans
@@ -27,7 +27,6 @@ from riser_soil.riser.part_kernels import LineForces, add_energy, add_forces, ad
 from riser_soil.riser.vectors import add, cross, dot, matrix, matscale, matvec, scale, vecmat, vector, write
 from riser_soil.seabed.grounds import Ground
 from riser_soil.seabed.law import NormalLaw
-from riser_soil.seabed.points import seabed_points
 
 
 class BodyContactData(NamedTuple):
@@ -148,9 +147,8 @@ class BodyContact(CompiledPart):
 
     def make_kernel_data(self) -> BodyContactData:
         radius = np.full(len(self.points), self.radius)
-        began, here = (seabed_points(radius, self.ground, self.law, self.memory) for _ in range(2))
-        work, ground, law = np.zeros(self.memory.shape[0] if self.memory.shape[1] > 0 else 0), here.ground, here.law
-        find_before = [*began.find, *written_work(self.law, here, began, work)]
+        here, began, work, find_before = seabed_step(radius, self.ground, self.law, self.memory)
+        ground, law = here.ground, here.law
         kernels, (find, before, hessians, keeping) = spans(here.find, find_before, here.write_hessians, here.keep)
         near = ground.place, ground.gradient, ground.hessian, ground.penetration
         answer = law.acts, law.force, law.slope, law.stored

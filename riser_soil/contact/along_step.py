@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,8 +12,9 @@ from riser_soil.core.bound import Bound, Packed
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import State
 from riser_soil.seabed.compiled_law import answer
+from riser_soil.seabed.grounds import Ground
 from riser_soil.seabed.law import NormalLaw
-from riser_soil.seabed.points import SeabedPoints
+from riser_soil.seabed.points import SeabedPoints, seabed_points
 
 #: How little of the force may be bent along the way, by its slopes and by its rise, for both ends to give the work.
 STEADY = 1e-3
@@ -21,6 +22,13 @@ STEADY = 1e-3
 WITHIN, ABOVE = 2, 4
 #: Gauss points of a panel, by places and weights in 0..1.
 _GAUSS = ((0.5 - 0.5 * math.sqrt(0.6), 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.5 + 0.5 * math.sqrt(0.6), 5.0 / 18.0))
+
+
+class Shares(NamedTuple):
+    """Shares (1,) of the law that act where a step starts and where it ends."""
+
+    start: Array
+    end: Array
 
 
 def work_along_step(law: NormalLaw, before: Array, after: Array, history: Array) -> Array:
@@ -43,14 +51,31 @@ def write_works(law: Any, reach: float, before: Array, after: Array, history: Ar
         work[i] = work_at(law, reach, before[i], after[i], history[i], workspace)
 
 
-def written_work(law: NormalLaw, here: SeabedPoints, began: SeabedPoints, work: Array) -> list[Bound]:
-    """Kernels that write the law's work (n,) by one way between the penetrations where the step began and at its end;
-    none for a law without a history, see `work_at`.
+class SeabedStep(NamedTuple):
+    """Points (n,) near a seabed at the end of a step and where it began; work (n,) [N] per length of a law with a
+    history by one way between both, (0,) of others; kernels that find what was there at the beginning, and the work.
     """
-    if here.law.history.shape[1] == 0:
-        return []
-    ways = began.law.penetration, here.law.penetration, here.law.history, work
-    return [Bound(write_works, *map(Packed, (law.kernel_data, float(law.reach), *ways)))]
+
+    here: SeabedPoints
+    began: SeabedPoints
+    work: Array
+    find_before: list[Bound]
+
+
+def seabed_step(
+    radius: Array, ground: Ground, law: NormalLaw, history: Array, cover: Any = None, shares: Shares | None = None
+) -> SeabedStep:
+    """Workspace for points of a radius (n,) [m] with a history (n, nh). cover: as of `seabed_points`; shares: of the
+    law that act, None for all of it.
+    """
+    start, end = (None, None) if shares is None else shares
+    began, here = (seabed_points(radius, ground, law, history, cover, share) for share in (start, end))
+    if history.shape[1] == 0:
+        return SeabedStep(here, began, np.zeros(0), began.find)
+    work = np.zeros(len(radius))
+    ways = began.law.penetration, here.law.penetration, history, work
+    write_work = Bound(write_works, *map(Packed, (law.kernel_data, float(law.reach), *ways)))
+    return SeabedStep(here, began, work, [*began.find, write_work])
 
 
 @njit

@@ -8,11 +8,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from riser_soil.contact.along_step import Shares
 from riser_soil.contact.contact import ContactResults, RiserContact, size_of, write_results
 from riser_soil.contact.law import Penalty
 from riser_soil.contact.seabed_kernels import (
     SeabedData,
-    Shares,
     land,
     seabed_data,
     write_at_nodes,
@@ -190,15 +190,16 @@ class Cushion(SeabedContact):
     """
 
     name, stays = "cushion", False
+    shares: Shares
 
     def __init__(self, line: Line, radius: Array, level: float, weight: float, depth: float, soil: Covering) -> None:
         law, ground = Penalty(weight / depth, 0.25 * depth), Plane.level(level + depth)
         super().__init__(line, radius, ground, law, stations.THREE_POINTS, beside(soil))
-        self.shares = self._remaining = Shares(np.ones(1), np.ones(1))
+        self.shares = Shares(np.ones(1), np.ones(1))
 
     def renew_kernel_data(self, start: float, end: float) -> None:
         super().renew_kernel_data(start, end)
-        for share, t in zip(self._remaining, (start, end), strict=True):
+        for share, t in zip(self.shares, (start, end), strict=True):
             share[0] = 1.0 if self.stays else (1.0 - min(t, 1.0)) ** 2
 
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from riser_soil.contact.along_step import lift, written_work
+from riser_soil.contact.along_step import Shares, lift, seabed_step
 from riser_soil.contact.contact import ContactResults, write_results
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.bound import Span, call_span, spans
@@ -114,13 +114,6 @@ class SeabedData(NamedTuple):
     keep: Span
 
 
-class Shares(NamedTuple):
-    """Shares (1,) of the law that act where a step starts and where it ends."""
-
-    start: Array
-    end: Array
-
-
 def seabed_data(
     line: Line,
     at: stations.Stations,
@@ -139,15 +132,11 @@ def seabed_data(
     None for nothing; shares: of the law that act, None for all of it.
     """
     (ne, ng, nh), d, n = memory.shape, line.dimension, share.size
-    weights = (None, None) if shares is None else shares
-    began, here = (
-        seabed_points(np.repeat(radius, ng), ground, law, memory.reshape(n, nh), cover, weight) for weight in weights
-    )
+    step = seabed_step(np.repeat(radius, ng), ground, law, memory.reshape(n, nh), cover, shares)
+    here, began = step.here, step.began
     at_nodes = seabed_points(larger_beside(radius), ground, law, law.initial_history((ne + 1,)), cover)
-    work = np.zeros(n if nh > 0 else 0)
-    find_before = [*began.find, *written_work(law, here, began, work)]
     kernels, (find, before, nodal, hessians, aside, keeping) = spans(
-        here.find, find_before, at_nodes.write_penetrations, here.write_hessians, here.set_all_aside, here.keep
+        here.find, step.find_before, at_nodes.write_penetrations, here.write_hessians, here.set_all_aside, here.keep
     )
     touching = TouchingStations(
         at,
@@ -165,9 +154,9 @@ def seabed_data(
         by=np.zeros((d, d)),
     )
     nodes = AtNodes(line.tributary_length, linear, at_nodes.ground.place, at_nodes.ground.penetration)
-    step = here.ground.place, here.ground.hessian, here.law.stored, began.ground.place, began.law.stored, work
+    arrays = here.ground.place, here.ground.hessian, here.law.stored, began.ground.place, began.law.stored, step.work
     called = kernels, find, before, nodal, hessians, aside, keeping
-    return SeabedData._make((touching, nodes, float(law.start), *step, *called))
+    return SeabedData._make((touching, nodes, float(law.start), *arrays, *called))
 
 
 def frame_of(line: Line) -> LineFrame:
