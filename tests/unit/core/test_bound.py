@@ -10,7 +10,8 @@ import numba
 import numpy as np
 import pytest
 
-from riser_soil.core.bound import Bound, Packed, call_each, calls
+from riser_soil.core.bound import Bound, Packed, call_each, call_span, calls, spans
+from riser_soil.core.entries import WANTED, compile_wanted
 from tests.support.on_ranks import environment, finished
 
 
@@ -63,6 +64,32 @@ def test_kernels_are_called_in_turn() -> None:
     both = Packed(calls(*(Bound(add, Packed(given(np.full((2, 4), k))), Packed(out)) for k in (1.0, 2.0))))
     Bound(call_each, both)()
     np.testing.assert_allclose(out, 3 * 2.0 * (3 + 7 + 11))
+
+
+def test_some_of_several_lists_of_kernels_are_called() -> None:
+    out = np.zeros((3, 2))
+    each = [Bound(add, Packed(given(np.full((2, 4), 1.0 + k))), Packed(row)) for k, row in enumerate(out)]
+    kernels, (first, none, rest) = spans(each[:1], [], each[1:])
+    Bound(call_span, Packed(kernels), Packed(none))()
+    assert not out.any()
+    Bound(call_span, Packed(kernels), Packed(rest))()
+    assert out.any(axis=1).tolist() == [False, True, True]
+    Bound(call_span, Packed(kernels), Packed(first))()
+    np.testing.assert_allclose(out[1:], [2.0 * out[0], 3.0 * out[0]])
+
+
+def test_what_is_bound_waits_where_kernels_run_as_python(monkeypatch: pytest.MonkeyPatch) -> None:
+    out = np.zeros(2)
+    bound = Bound(add, Packed(given(np.ones((2, 4)))), Packed(out))
+    addresses = calls(bound).functions
+    assert bound.entry in WANTED
+    with monkeypatch.context() as uncompiled:
+        uncompiled.setattr(numba.config, "DISABLE_JIT", True)
+        compile_wanted()
+    assert not addresses.any()
+    bound()
+    assert addresses.all()
+    assert out.all()
 
 
 def test_kernels_that_are_bound_after_a_call_are_there_at_the_next() -> None:
