@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numba import config
 
+from riser_soil.core.arrays import IntArray
 from riser_soil.core.compiled import njit
 from riser_soil.core.entries import WANTED, Calls, compile_wanted, entry_of
 from riser_soil.core.kinds import TupleKind
@@ -42,18 +43,18 @@ class Bound:
     def __call__(self) -> None:
         if WANTED:
             compile_wanted()
-        self._call(self.row, self.row)
+        self._call()
 
     @cached_property
     def function(self) -> Any:
         return self.entry.compiled.address
 
     @cached_property
-    def _call(self) -> Callable[[int, int], None]:
-        return CALL(self.function)
+    def _call(self) -> Callable[[], None]:
+        return partial(CALL(self.function), self.row, self.row)
 
 
-def _interpreted(kernel: Any, arguments: Sequence[Packed], row: int, same: int) -> None:
+def _interpreted(kernel: Any, arguments: Sequence[Packed], *rows: int) -> None:
     kernel(*(each.value for each in arguments))
 
 
@@ -65,13 +66,6 @@ def bound(stub: Any, data: tuple[Any, ...] | Packed, *arguments: Packed) -> Boun
     return Bound(stub.kernels[type(packed.value)], packed, *arguments)
 
 
-@njit
-def call_each(given: Calls) -> None:
-    """Call bound kernels one after the other."""
-    for n in range(given.rows.size):
-        given.functions[n](given.rows[n], given.rows[n])
-
-
 Span = tuple[int, int]
 """The first of some kernels among others, and the one behind the last."""
 
@@ -81,6 +75,12 @@ def call_span(given: Calls, span: Span) -> None:
     """Call some of the bound kernels one after the other."""
     for n in range(span[0], span[1]):
         given.functions[n](given.rows[n], given.rows[n])
+
+
+@njit
+def call_each(given: Calls) -> None:
+    """Call bound kernels one after the other."""
+    call_span(given, (0, given.rows.size))
 
 
 class _Addresses:
@@ -109,6 +109,16 @@ def spans(*lists: Sequence[Bound]) -> tuple[Calls, list[Span]]:
     return calls(*chain(*lists)), list(pairwise(ends))
 
 
-def in_turn(*bound: Bound) -> Bound:
-    """Bound kernels as one, called one after the other."""
-    return Bound(call_each, Packed(calls(*bound)))
+@njit
+def call_until(given: Calls, failure: IntArray) -> None:
+    """Call bound kernels one after the other until one of them writes a failure (1,)."""
+    for n in range(given.rows.size):
+        given.functions[n](given.rows[n], given.rows[n])
+        if failure[0] != 0:
+            break
+
+
+def in_turn(*bound: Bound, until: Packed | None = None) -> Bound:
+    """Bound kernels as one, called one after the other; until: an integer (1,), at which other than zero they end."""
+    given = Packed(calls(*bound))
+    return Bound(call_each, given) if until is None else Bound(call_until, given, until)

@@ -71,9 +71,9 @@ class Kernel:
         if config.DISABLE_JIT:
             return self.py_func(*arguments)
         types = tuple(map(type, arguments))
-        if types in self._latest:
+        if latest := self._latest.get(types):
             try:
-                return self._latest[types](*arguments)
+                return latest(*arguments)
             except TypeError:
                 del self._latest[types]
         self._latest[types] = self._made_for(arguments)

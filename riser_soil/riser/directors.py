@@ -98,7 +98,7 @@ class PlanarFrames:
 
     def turning(self, increment: Array) -> Callable[[], PlanarOrientation]:
         """What makes the orientation after an increment from where the line is now, whenever it is called."""
-        return partial(PlanarOrientation, self.angle + increment[:, 0], self.alpha0)
+        return partial(_turned, self.angle, increment, self.alpha0)
 
     def in_new_axes(self, moment: Array, increment: Array) -> Array:
         """Moments (nn, 1) conjugate to the increment, as the next one has them."""
@@ -112,6 +112,10 @@ class PlanarFrames:
 
     def restore(self, saved: Saved) -> None:
         self.angle = saved["angle"]
+
+
+def _turned(angle: Array, increment: Array, alpha0: Array) -> PlanarOrientation:
+    return PlanarOrientation(angle + increment[:, 0], alpha0)
 
 
 def initial_frames(rotation: Array, T0: Array, basis: Array) -> PlanarFrames | SpatialFrames:

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.compiled import njit
 from riser_soil.core.saved_state import Saved
 from riser_soil.riser.directors import Frames, Orientation
 from riser_soil.riser.spatial_directors import SpatialOrientation
@@ -125,8 +126,7 @@ class LineEnds:
         reach: by end, the share (nn,) that each node takes.
         """
         for node, motion, count in self._moving():
-            rest = self._motion(node, motion, t, x)[0, :count] - moved[node, :count]
-            moved[:, :count] += np.outer(reach[node], rest)
+            _spread_motion(moved, node, self._motion(node, motion, t, x)[0], count, reach[node])
 
     def prescribe(self, t: float, x: Array, u: Array, v: Array, a: Array) -> None:
         """Write increments, rates and accelerations of prescribed dofs into the field's slices; nodes at x (nn, d)."""
@@ -134,7 +134,7 @@ class LineEnds:
             values[self._dofs] = 0.0
         for node, motion, count in self._moving():
             at = slice(node * self._ndof, node * self._ndof + count)
-            u[at], v[at], a[at] = (each[:count] for each in self._motion(node, motion, t, x))
+            u[at], v[at], a[at] = self._motion(node, motion, t, x)[:, :count]
         for node, end in self._ends:
             if end.rotation_fixed and end.turning is not None:
                 self._turn(node, end.turning(t), self.support(node, t), (u, v, a))
@@ -146,7 +146,9 @@ class LineEnds:
                 yield node, end.motion, end.fixed_coordinates(self._dimension)
 
     def _motion(self, node: int, motion: Motion, t: float, x: Array) -> Array:
-        """Increment, velocity and acceleration (3, d) by which a motion moves its node; cached by time and place."""
+        """Increment, velocity and acceleration (3, d), in the line's axes, by which a motion moves its node; cached by
+        time and place.
+        """
         cached = self._motions.get(node)
         if cached is None or cached[0] is not motion or cached[1] != t or cached[2] is not x:
             rows = _motion_in_axes(np.array(motion(t)), self._origin, self._basis, x[node])
@@ -177,13 +179,28 @@ class LineEnds:
         self._supports, self._bases = (dict(zip(nodes, saved[name], strict=True)) for name in ("supports", "bases"))
 
 
+@njit
+def _spread_motion(moved: Array, node: int, to: Array, count: int, reach: Array) -> None:
+    """Add the rest of a node's motion `to` (d,) to the first coordinates of increments (nn, ndof), by shares (nn,)."""
+    for i in range(count):
+        rest = to[i] - moved[node, i]
+        for n in range(moved.shape[0]):
+            moved[n, i] += reach[n] * rest
+
+
+@njit
 def _motion_in_axes(motion: Array, origin: Array, basis: Array, start: Array) -> Array:
     """Displacement, velocity and acceleration (3, d) in the axes of a line: of a motion (3, 3), its place first, from
     where the node is, `start` (d,).
     """
-    rows = motion @ basis
-    rows[0] -= origin @ basis + start
-    return np.asarray(rows)
+    out = np.zeros((3, basis.shape[1]))
+    for k in range(3):
+        for i in range(basis.shape[1]):
+            for j in range(3):
+                out[k, i] += (motion[k, j] - (origin[j] if k == 0 else 0.0)) * basis[j, i]
+    for i in range(basis.shape[1]):
+        out[0, i] -= start[i]
+    return out
 
 
 STILL = 1e-9  # of the line's length, or a radian: what moves less does not move

@@ -89,13 +89,17 @@ class MovingNodes:
         self._trials = IdentityCache[State, Trial](first=1, latest=2)
 
     @property
-    def part(self) -> slice:
-        """The field's slice of the local arrays."""
-        return slice(self.offset, self.offset + self.size)
+    def offset(self) -> int:
+        """The field's first dof in local arrays; setting it moves the field's slice of them, `part`."""
+        return self._offset
+
+    @offset.setter
+    def offset(self, first: int) -> None:
+        self._offset, self.part = first, slice(first, first + self.size)
 
     def nodal(self, values: Array) -> Array:
         """View (nn, ndof) of the field's slice of a local array."""
-        return values[self.offset : self.offset + self.size].reshape(self.nodes, self.ndof)
+        return values[self.part].reshape(self.nodes, self.ndof)
 
     @property
     def translation_dofs(self) -> IntArray:
@@ -171,9 +175,9 @@ class MovingNodes:
 
     def commit(self, state: State) -> None:
         """Accept the increments of a state; chords sum theirs, so their round-off is not that of far positions."""
-        trial = self.trial(state)
-        self.x, self.chord = trial.x, trial.chord
-        self.frames.commit(self.nodal(state.u)[:, self.dimension :])
+        u = self.nodal(state.u)
+        self.x, self.chord = after_increments(self.x, self.chord, u)
+        self.frames.commit(u[:, self.dimension :])
         self.forget()
 
     def state(self) -> Saved:

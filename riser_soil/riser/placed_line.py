@@ -73,7 +73,7 @@ class PlacedLine:
             return
         self._base.update()
         u = state.u[line.part]
-        moves, (v, a) = bool(u.any()), self._rates
+        moves, (v, a) = np.count_nonzero(u) > 0, self._rates
         unmoved = line.x is self._from and not (moves or self._moved)
         if not (unmoved and state.v is v and (velocities_alone or state.a is a)):
             self._v[:], self._a[:], self._rates = state.v[line.part], state.a[line.part], (state.v, state.a)

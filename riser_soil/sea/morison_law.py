@@ -22,6 +22,8 @@ from riser_soil.core.compiled import njit
 from riser_soil.core.rows import Vector, as_tuple
 from riser_soil.riser.hermite import Size
 
+STILL = 1e-150  # m/s, whose square is as good as zero; to ask whether a speed is zero keeps loops off vectors
+
 
 def drag_coefficients(rho: float, diameter: Array, normal: Array, tangential: Array) -> Array:
     """Factors (ne, 2) of |v_n| v_n and |v_t| v_t, kg/m2, from Cdn and Cdt."""
@@ -71,7 +73,7 @@ def write_drag_derivatives(
     v, tau = as_tuple(v, D), as_tuple(tau, D)
     along, speed = _split(v, tau, D)
     normal, tangential = weight * c[0] * speed, weight * 2.0 * c[1] * abs(along)
-    bend = weight * c[0] / speed if speed > 0.0 else 0.0
+    bend = weight * c[0] / max(speed, STILL)
     excess, turned, shorter = tangential - normal, (0.5 * tangential - normal) * along, 1.0 / stretch
     for i in range(len(D)):
         across_i = v[i] - along * tau[i]

@@ -95,6 +95,8 @@ class LineSolver(StepResults):
         self._solved: State | None = None  # by this solver
         self._nothing = np.zeros(system.numbering.size)
         self._no_work = {part.name: Work() for part in system.model.parts}
+        self._committed = [part for packed in self._lines for part in packed.committed]
+        self._committed += [part for each in self._couplings for part in each.parts]
         self._results: dict[Line, LineResults] = {}
         if packed.smooth:
             fields = [(packed, packed.line) for packed in self._lines]
@@ -163,8 +165,8 @@ class LineSolver(StepResults):
         """The solution at the step's end."""
         u, v, a = self._nothing.copy(), trial.begun.v.copy(), trial.begun.a.copy()
         for packed in self._lines:
-            at, step = packed.line.part, packed.step
-            u[at], v[at], a[at] = step.u.ravel(), step.v.ravel(), step.a.ravel()
+            at = packed.line.part
+            u[at], v[at], a[at] = packed.solution
         for each in self._couplings:
             each.put_increments(trial.weights, u, v, a)
         return trial.end_of(State(trial.begun.t, u, v, a, dt=trial.begun.dt))
@@ -173,9 +175,8 @@ class LineSolver(StepResults):
         """Forces of the last trial; on the free dofs of soil they are in balance."""
         forces = Forces.zeros(len(self._nothing))
         for packed in self._lines:
-            of_line, at = packed.forces, packed.line.part
-            forces.inertia[at], forces.force[at] = of_line.inertia.ravel(), of_line.force.ravel()
-            forces.end[at] = of_line.end.ravel()
+            at = packed.line.part
+            forces.inertia[at], forces.force[at], forces.end[at] = packed.groups
         return forces
 
     def commit(self, state: State) -> None:
@@ -184,10 +185,8 @@ class LineSolver(StepResults):
             self.system.commit(state)
             return
         since = time.perf_counter()
-        for packed in self._lines:
-            packed.keep()
-        committed = [part for packed in self._lines for part in packed.committed]
-        self.system.commit(state, [*committed, *(part for each in self._couplings for part in each.parts)])
+        self.packed.keep()
+        self.system.commit(state, self._committed)
         for results in self._results.values():
             results.commit()
         self.system.clock.add("line solver", since)

@@ -156,14 +156,15 @@ class LineSystem:
             *fixed_rate_bulk, *joined, *fixed_rate_contact, *sizes, *terms, *coupled(lambda it: it.terms()),
             Bound(kernels.set_zero, above), *looked, *coupled(lambda it: it.above(above)),
         ]  # fmt: skip
-        renew = [*bulk, *joined, *contact, *factors]
         touch = [*contact, *factors] if contact else []
         improve = [*solve, *(line.improve() for line in lines)]
         self._look_for_tangles = in_turn(*(kernel for line in lines for kernel in line.look_for_tangles))
         self.evaluate, self._probe = in_turn(*evaluate), in_turn(*probe)
-        self._renew, self.renew_contact, self._improve = in_turn(*renew), in_turn(*touch), in_turn(*improve)
+        self._update = in_turn(*bulk, *joined, *contact, *factors, *improve, until=failure)
+        self._update_by_kept_tangent, self.renew_contact = in_turn(*touch, *improve, until=failure), in_turn(*touch)
         self.write_tangent = in_turn(*bulk, *joined, *contact, *fill, *sizes)
         self.correct = in_turn(*factors, *improve)
+        self._keep = in_turn(*history) if (history := [kernel for line in lines for kernel in line.keep()]) else None
 
     def begin(self, state: State, past: Array, weights: Weights, limits: StopLimits) -> None:
         """Begin a step from a state of all local dofs.
@@ -172,9 +173,7 @@ class LineSystem:
         the trial's rates. limits: of Newton's iterations.
         """
         for line in self.lines:
-            at = line.line.part
-            own = State(state.t, state.u[at], state.v[at], state.a[at])
-            line.begin(own, past[at], weights)
+            line.begin(state, past, weights)
         self.convergence = Convergence(limits)
 
     def solve(self) -> str:
@@ -204,13 +203,15 @@ class LineSystem:
         have been probed there has fallen by less than one that leaves it.
         """
         if self.convergence.keeps_tangent:
-            self.renew_contact()
+            self._update_by_kept_tangent()
         else:
-            self._renew()
-        if self._failure[0] != kernels.NONE:
-            return NOT_SOLVED
-        self._improve()
-        return ITERATING
+            self._update()
+        return ITERATING if self._failure[0] == kernels.NONE else NOT_SOLVED
+
+    def keep(self) -> None:
+        """Keep the history of the parts at the solution."""
+        if self._keep is not None:
+            self._keep()
 
     def account(self, before: State) -> None:
         """Compute the energy at the end of the step solved last, and the work in it."""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from riser_soil.core.arrays import Array, BoolArray, as_list
-from riser_soil.core.bound import Bound, Packed, bound, in_turn
+from riser_soil.core.bound import Bound, Packed, bound
 from riser_soil.core.part import State, Weights, Work
 from riser_soil.riser.bound_parts import BoundParts, KernelData, has_history, has_work
 from riser_soil.riser.configuration import Configuration, write_folded, write_magnitudes
@@ -22,7 +22,7 @@ class PackedLine:
     to, at being the trial configuration.
 
     parts: that act on it; committed: those whose history no kernel keeps. prescribed, levers (size,): of its dofs;
-    weights: of the step.
+    weights: of the step. solution: increments and rates of the step, and groups: forces by group, as vectors (size,).
     """
 
     def __init__(self, parts: LineParts, prescribed: BoolArray, levers: Array) -> None:
@@ -33,7 +33,9 @@ class PackedLine:
         self._kernels = BoundParts(self._trial.at, parts.data)
         self.at, self.forces = self._kernels.at, self._kernels.forces
         self.workspace = matrix_workspace(*shape)
-        self._start = [values.ravel() for values in (self.step.u, self.step.v0, self.step.a0, self.step.past)]
+        self._start = _flat(self.step.u, self.step.v0, self.step.a0, self.step.past)
+        self.solution = _flat(self.step.u, self.step.v, self.step.a)
+        self.groups = _flat(self.forces.inertia, self.forces.force, self.forces.end)
         self.dofs = Dofs(prescribed.reshape(shape), levers.reshape(shape), *_zeros(3, shape))
         self.weights, self._maps = self._trial.weights, self._trial.maps
         self._weights_at_fixed_rates = Packed(Weights.of_statics())
@@ -45,7 +47,6 @@ class PackedLine:
         folded = bound(write_folded, self.at, self._trials.base.packed, Packed(self._folded))
         self.look_for_tangles = [folded] if line.nodes > 1 else []
         self.write_sizes = bound(write_magnitudes, self.at, Packed(self.dofs.sizes))
-        self.keep = in_turn(*self._kernels.keep())
         self.committed = [part for part in parts.parts if not has_history(part.kernel_data())]
         turning = ((part, has_work(part.kernel_data())) for part in parts.parts)
         self._turning = [(part, kernel) for part, kernel in turning if kernel or _by_method(part)]
@@ -115,6 +116,10 @@ class PackedLine:
         turned_over = self._kernels.work(self._trials.then.at, self.work)
         return [Bound(kernels.set_zero, Packed(self.work)), *self._kernels.energy(energy), *turned_over]
 
+    def keep(self) -> list[Bound]:
+        """Kernels that keep the history of the parts at the solution."""
+        return self._kernels.keep()
+
     @property
     def begun(self) -> Configuration:
         """The line's configuration where the step began, as `move_start` has placed it."""
@@ -135,12 +140,12 @@ class PackedLine:
             work[part.name] += Work(*next(compiled)) if kernel else part.work(before, after)
 
     def begin(self, state: State, past: Array, weights: Weights) -> None:
-        """Begin a step. state, past: as of `LineSystem`, of this line's dofs."""
+        """Begin a step; arguments as of `LineSystem.begin`."""
         self._trials.base.update()
-        u, v, a, earlier = self._start
-        u[:], v[:], a[:], earlier[:] = state.u, state.v, state.a, past
-        self._trial.weigh(weights)
-        self._weights_at_fixed_rates.renew(self.weights.value._replace(shift_v=0.0, shift_a=0.0))
+        at, (u, v, a, earlier) = self.line.part, self._start
+        u[:], v[:], a[:], earlier[:] = state.u[at], state.v[at], state.a[at], past[at]
+        if self._trial.weigh(weights):
+            self._weights_at_fixed_rates.renew(self.weights.value._replace(shift_v=0.0, shift_a=0.0))
 
     @property
     def folding(self) -> tuple[int, int]:
@@ -152,6 +157,11 @@ class PackedLine:
 def _by_method(part: CompiledPart) -> bool:
     """Whether a part computes its work by a method of its own, not by a kernel."""
     return overrides(part, "work") and type(part).work is not CompiledPart.work
+
+
+def _flat(*arrays: Array) -> list[Array]:
+    """Views of arrays as vectors."""
+    return [each.ravel() for each in arrays]
 
 
 def _zeros(n: int, shape: tuple[int, ...]) -> list[Array]:

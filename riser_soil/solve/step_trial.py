@@ -36,8 +36,8 @@ class StepTrial:
 
     def _begun(self) -> State:
         step, scheme = self.step, self.step.scheme
-        still = scheme.trial(step.before, step.t, step.dt, np.zeros(step.guess.size))
-        begun = State(step.t, step.guess.copy(), still.v, still.a, dt=still.dt)
+        begun = scheme.trial(step.before, step.t, step.dt, np.zeros(step.guess.size))
+        begun.u[:] = step.guess
         self._system.prescribe(begun)
         if self._ratio == 1.0:
             return begun

@@ -17,7 +17,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -34,7 +33,8 @@ from riser_soil.solve.inverse_mass import InverseMass
 class CommittedStep:
     """A step just committed, and what its scheme needs from the system there; collective.
 
-    mass: None in statics. solved: its state, increments included; forces: in balance there [N]; dt [s].
+    mass: None in statics. solved: its state, increments included; forces: in balance there [N]; dt [s]. state: the same
+    with increments of zero, and rates as solved.
     """
 
     system: System
@@ -44,13 +44,10 @@ class CommittedStep:
     forces: Forces
     dt: float
 
-    @cached_property
-    def state(self) -> State:
-        """Increments zero, rates as solved."""
-        solved = self.solved
-        return State(solved.t, np.zeros(solved.u.size), solved.v, solved.a)
+    def __post_init__(self) -> None:
+        self.state = State(self.solved.t, np.zeros(self.solved.u.size), self.solved.v, self.solved.a)
 
-    @cached_property
+    @property
     def contact(self) -> Array | None:
         """Accelerations that contact causes [m/s2]; None where no forces may jump."""
         return None if self.system.smooth else self._accelerations(-self.forces.end)
@@ -233,10 +230,10 @@ class GeneralizedAlpha:
         return State(state.t, state.u, v, a, dt=state.dt)
 
     def rates_after(self, end: CommittedStep) -> tuple[State, State]:
-        if end.contact is None:
+        if (contact := end.contact) is None:
             return end.state, end.state
-        bulk = self.split_contact(end.state, end.contact, end.dt)
-        return bulk, State(bulk.t, bulk.u, bulk.v, bulk.a + end.contact)
+        bulk = self.split_contact(end.state, contact, end.dt)
+        return bulk, State(bulk.t, bulk.u, bulk.v, bulk.a + contact)
 
 
 @njit
