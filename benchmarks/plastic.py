@@ -18,7 +18,7 @@ from riser_soil.soil.soil import Soil
 from riser_soil.solve.direct_solver import use_mumps
 from riser_soil.solve.kept_factors import KeptFactors
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.snes import SnesLoop
+from riser_soil.solve.snes_loop import SnesLoop
 
 CLAY = "su: 2.0e3, su_gradient: 1.5e3, E_over_su: 300.0"
 LAWS = {

@@ -5,9 +5,10 @@ from __future__ import annotations
 from riser_soil.core.arrays import Array
 from riser_soil.core.banded import SingularError
 from riser_soil.core.system import System
+from riser_soil.solve.balance import Balance, Loop
 from riser_soil.solve.bordered_band import BorderedBand, band_of
 from riser_soil.solve.convergence import ITERATING, NOT_SOLVED
-from riser_soil.solve.newton_loop import Balance, Loop, iterate
+from riser_soil.solve.newton_loop import iterate
 
 
 def band_loop(system: System, max_iterations: int, balance: Balance) -> BandLoop | None:

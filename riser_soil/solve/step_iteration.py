@@ -1,6 +1,6 @@
 """Newton's method for a step over the parts of a system: residual, tangent and the rules of convergence.
 
-The loop of lines and bodies (`band_loop`) and PETSc's SNES (`snes`) call them.
+The loop of lines and bodies (`band_loop`) and PETSc's SNES (`snes_loop`) call them.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from riser_soil.core.part import Forces, State, Weights
 from riser_soil.core.roles import Adaptive, Limited, Yielding, with_role
 from riser_soil.core.saved_state import Saved, under, within
 from riser_soil.core.system import System
+from riser_soil.solve.balance import Loop, OutgrownError
 from riser_soil.solve.band_loop import band_loop
 from riser_soil.solve.convergence import CONVERGED, ITERATING, OUTGROWN, TOO_MANY, Convergence
 from riser_soil.solve.elastic_share import ElasticShare
 from riser_soil.solve.line_search import step_length
-from riser_soil.solve.newton_loop import Loop, OutgrownError
 from riser_soil.solve.newton_settings import NewtonSettings, limits_of
 from riser_soil.solve.residual_norm import ResidualNorm, above_round_off
 from riser_soil.solve.stability import PivotCounter, prescribe_free_turns, unstable_modes
@@ -56,7 +56,7 @@ class StepIteration:
         loop = None if self.settings.snes else band_loop(self.system, self.settings.max_iterations, self)
         if loop is not None:
             return loop
-        from riser_soil.solve.snes import SnesLoop
+        from riser_soil.solve.snes_loop import SnesLoop
 
         return SnesLoop(self.system, self.settings, self)
 

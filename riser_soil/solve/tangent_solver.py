@@ -11,13 +11,13 @@ from petsc4py import PETSc
 from riser_soil.core.banded import SingularError
 from riser_soil.core.factor_memory import Workspace
 from riser_soil.core.system import System
+from riser_soil.solve.balance import Balance
 from riser_soil.solve.bordered_band import band_of
 from riser_soil.solve.convergence import NOT_SOLVED
 from riser_soil.solve.direct_solver import DirectSolver
 from riser_soil.solve.iterative_solver import IterativeSolver, solid_of
 from riser_soil.solve.kept_factors import KeptFactors
 from riser_soil.solve.linear_solver import LinearSolver, complaint, raised
-from riser_soil.solve.newton_loop import Balance
 from riser_soil.solve.petsc_options import UserOptions
 from riser_soil.solve.riser_above_soil import RiserAboveSoil
 from riser_soil.solve.section_solver import SectionSolver, sections_of

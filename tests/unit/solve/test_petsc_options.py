@@ -14,12 +14,12 @@ from petsc4py import PETSc
 from riser_soil.core.part import Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.errors import SceneError
+from riser_soil.solve.balance import OutgrownError
 from riser_soil.solve.linear_solver import raised
 from riser_soil.solve.newton import Newton
-from riser_soil.solve.newton_loop import OutgrownError
 from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.petsc_options import PREFIX, user_options
-from riser_soil.solve.snes import SnesLoop
+from riser_soil.solve.snes_loop import SnesLoop
 from riser_soil.solve.step import NotConvergedError, Solution, Step
 from riser_soil.solve.step_iteration import StepIteration
 from riser_soil.solve.time_scheme import Static
