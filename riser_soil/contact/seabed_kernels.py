@@ -11,7 +11,7 @@ import numpy as np
 
 from riser_soil.contact.along_step import Shares, lift, seabed_step
 from riser_soil.contact.contact import ContactResults, write_results
-from riser_soil.core.arrays import Array, BoolArray
+from riser_soil.core.arrays import Array, BoolArray, as_list
 from riser_soil.core.bound import Span, call_span, spans
 from riser_soil.core.compiled import fixed, njit
 from riser_soil.core.entries import Calls
@@ -46,6 +46,8 @@ from riser_soil.riser.vectors import (
 from riser_soil.seabed.grounds import Ground
 from riser_soil.seabed.law import NormalLaw
 from riser_soil.seabed.points import seabed_points
+
+FLAT: Mat = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 class LineFrame(NamedTuple):
@@ -89,7 +91,8 @@ class AtNodes(NamedTuple):
 
 
 class SeabedData(NamedTuple):
-    """A `SeabedContact`: the stations that touch; the nodes; the gap at which the law's force starts [m].
+    """A `SeabedContact`: the stations that touch; the nodes; the gap at which the law's force starts [m]; whether the
+    ground is flat.
 
     Places of the stations (n, 3) in global axes, hessians of the distance (n, 3, 3) and energy stored (n,); places and
     energy where the step began; work (n,) of a law with a history in the step, (0,) of others. Kernels, see
@@ -99,6 +102,7 @@ class SeabedData(NamedTuple):
     touching: TouchingStations
     nodes: AtNodes
     start: float
+    flat: bool
     place: Array
     hessian: Array
     stored: Array
@@ -156,14 +160,15 @@ def seabed_data(
     nodes = AtNodes(line.tributary_length, linear, at_nodes.ground.place, at_nodes.ground.penetration)
     arrays = here.ground.place, here.ground.hessian, here.law.stored, began.ground.place, began.law.stored, step.work
     called = kernels, find, before, nodal, hessians, aside, keeping
-    return SeabedData._make((touching, nodes, float(law.start), *arrays, *called))
+    return SeabedData._make((touching, nodes, float(law.start), ground.flat, *arrays, *called))
 
 
 def frame_of(line: Line) -> LineFrame:
     """The frame of a line's coordinates."""
     axes = np.zeros((3, 3))
     axes[: line.dimension] = line.basis.T
-    return LineFrame(vector(line.origin), matrix(axes))
+    origin, rows = as_list(line.origin), as_list(axes)
+    return LineFrame((origin[0], origin[1], origin[2]), (tuple(rows[0]), tuple(rows[1]), tuple(rows[2])))
 
 
 @njit
@@ -181,7 +186,9 @@ def normal_at(touching: TouchingStations, p: int) -> Vec:
 
 @njit
 def bend_at(part: SeabedData, p: int) -> Mat:
-    """Hessian of the distance of a station [1/m] in the line's axes."""
+    """Hessian of the distance of a station [1/m] in the line's axes; zero on flat ground."""
+    if part.flat:
+        return FLAT
     axes = part.touching.frame.axes
     bend: Mat = matmul(matmul(axes, matrix(part.hessian[p])), transpose(axes))
     return bend
@@ -194,9 +201,9 @@ def by_position(force: float, slope: float, normal: Vec, bend: Mat) -> Mat:
 
 
 @njit
-def _position(touching: TouchingStations, p: int, q: Array, D: Size) -> Vec:
-    """Position of a station in the line's axes."""
-    x = stations.value_at(touching.at.N, p, q, p // touching.share.shape[1], D)
+def _position(touching: TouchingStations, p: int, q: Array, e: int, D: Size) -> Vec:
+    """Position of station p of all, which lies in element e, in the line's axes."""
+    x = stations.value_at(touching.at.N, p, q, e, D)
     for i in range(len(D)):
         touching.f[i] = x[i]
     position: Vec = padded(touching.f)
@@ -230,18 +237,20 @@ def _find_at_nodes(part: SeabedData, x: Array) -> None:
 
 @add_forces.of(SeabedData)
 def _contact_forces(part: SeabedData, at: Configuration, out: LineForces) -> None:
-    touching, ng = part.touching, part.touching.share.shape[1]
-    for p in range(touching.force.size):
-        x = _position(touching, p, at.q, at.D)
-        write(x, touching.position[p])
-        write(global_place(touching.frame, x), part.place[p])
+    touching, (ne, ng) = part.touching, part.touching.share.shape
+    for e in range(ne):
+        for p in range(e * ng, (e + 1) * ng):
+            x = _position(touching, p, at.q, e, at.D)
+            write(x, touching.position[p])
+            write(global_place(touching.frame, x), part.place[p])
     call_span(part.kernels, part.find)
-    touching.touches[:] = False
-    for p in range(touching.force.size):
-        if touching.acts[p]:
-            touching.touches[p // ng] = True
-            write(scale(-touching.force[p], normal_at(touching, p)), touching.f)
-            stations.add_integrand_at(touching.at.weighted, p, as_tuple(touching.f, at.D), out.end_q, p // ng, at.D)
+    for e in range(ne):
+        touching.touches[e] = False
+        for p in range(e * ng, (e + 1) * ng):
+            if touching.acts[p]:
+                touching.touches[e] = True
+                write(scale(-touching.force[p], normal_at(touching, p)), touching.f)
+                stations.add_integrand_at(touching.at.weighted, p, as_tuple(touching.f, at.D), out.end_q, e, at.D)
 
 
 @add_tangent.of(SeabedData)
@@ -264,9 +273,9 @@ def _contact_tangent(part: SeabedData, at: Configuration, maps: Maps, weights: W
 
 @add_energy.of(SeabedData)
 def _contact_energy(part: SeabedData, at: Configuration, energy: Array) -> None:
-    ng = part.touching.share.shape[1]
+    share = part.touching.share.reshape(part.stored.size)
     for p in range(part.stored.size):
-        energy[2] += part.touching.share[p // ng, p % ng] * part.stored[p]
+        energy[2] += share[p] * part.stored[p]
 
 
 @add_work.of(SeabedData)
@@ -277,18 +286,18 @@ def _contact_work(part: SeabedData, first: Configuration, last: Configuration, w
     the work of the law along the step is the time scheme's; on ground without a history it is all. The last
     configuration is that of the forces evaluated last.
     """
-    touching, ng = part.touching, part.touching.share.shape[1]
-    extracted, gained, by_law = 0.0, 0.0, 0.0
-    for p in range(touching.force.size):
-        write(global_place(touching.frame, _position(touching, p, first.q, last.D)), part.began_at[p])
+    touching, (ne, ng) = part.touching, part.touching.share.shape
+    share, extracted, gained, by_law = touching.share.reshape(ne * ng), 0.0, 0.0, 0.0
+    for e in range(ne):
+        for p in range(e * ng, (e + 1) * ng):
+            write(global_place(touching.frame, _position(touching, p, first.q, e, last.D)), part.began_at[p])
     call_span(part.kernels, part.find_before)
-    for p in range(touching.force.size):
-        share = touching.share[p // ng, p % ng]
+    for p in range(ne * ng):
         way = sub(vector(part.place[p]), vector(part.began_at[p]))
-        extracted -= share * touching.force[p] * dot(vector(touching.gradient[p]), way)
-        gained += share * (part.stored[p] - part.stored_before[p])
+        extracted -= share[p] * touching.force[p] * dot(vector(touching.gradient[p]), way)
+        gained += share[p] * (part.stored[p] - part.stored_before[p])
         if part.work.size > 0:
-            by_law += share * part.work[p]
+            by_law += share[p] * part.work[p]
     work[0] += extracted - gained
     work[3] += extracted - (by_law if part.work.size > 0 else gained)
 
@@ -302,17 +311,18 @@ def _keep_history(part: SeabedData, at: Configuration) -> None:
 @write_results.of(SeabedData)
 def _contact_results(part: SeabedData, at: Configuration, out: ContactResults) -> None:
     touching, nodes, total = part.touching, part.nodes, (0.0, 0.0, 0.0)
-    ng = touching.share.shape[1]
+    ne, ng = touching.share.shape
     out.force_per_length[:], out.deepest[0] = 0.0, 0.0
     call_span(part.kernels, part.set_all_aside)
-    for p in range(touching.force.size):
-        e, g, force = p // ng, p % ng, touching.force[p]
-        out.clearance[p] = -touching.penetration[p] - part.start
-        out.force[p] = force
-        out.deepest[0] = max(out.deepest[0], touching.penetration[p])
-        for side in range(2):
-            out.force_per_length[e + side] += nodes.linear[side, g] * (touching.share[e, g] * force)
-        total = add(total, scale(touching.share[e, g] * force, normal_at(touching, p)))
+    for e in range(ne):
+        for g in range(ng):
+            p = e * ng + g
+            force = touching.share[e, g] * touching.force[p]
+            out.clearance[p], out.force[p] = -touching.penetration[p] - part.start, touching.force[p]
+            out.deepest[0] = max(out.deepest[0], touching.penetration[p])
+            for side in range(2):
+                out.force_per_length[e + side] += nodes.linear[side, g] * force
+            total = add(total, scale(force, normal_at(touching, p)))
     write(vecmat(total, touching.frame.axes), out.on_riser)
     _find_at_nodes(part, at.x)
     for n in range(nodes.length.size):

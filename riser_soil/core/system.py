@@ -70,6 +70,7 @@ class System:
     smooth: whether no forces are taken at the end of the step alone, so that none may jump, as contact's do. gradual:
     whether those that there are grow along curves, see `Traits`.
     lever: the longest one of a line, see `LineField`; levers (size,): of each local dof, 1 for translations.
+    no_increments (size,): zeros, the increments of accepted states, which are not to be written to.
     """
 
     def __init__(self, comm: Communicator, model: Model, clock: Timer, patterns: Patterns | None = None) -> None:
@@ -79,6 +80,7 @@ class System:
         self._active = [part for part in model.parts if part.active]
         self._joined: dict[tuple[int, ...], tuple[Sequence[Part], Sequence[Contribution]]] = {}
         self._number()
+        self.no_increments: Array = np.zeros(self.numbering.size)
         self.lever, self.levers = self._weigh_moments()
         self.symmetric = all_of(comm, all(p.traits.symmetric for p in model.parts))
         at_end = [p.traits for p in model.parts if "E" in p.traits.groups]

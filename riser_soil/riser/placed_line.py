@@ -61,6 +61,8 @@ class PlacedLine:
         self._state: State | None = None
         self._from: Array | None = None  # the places of the nodes where the line was accepted
         self._moved = False  # whether it has moved from there
+        self._increments: Array | None = None  # of all local dofs, that were looked at last: whether they move it
+        self._moves = False
         self._rates: tuple[Array | None, Array | None] = None, None  # that it has, of all local dofs
         self.count, self._mapped = 0, -1  # the count for which the maps hold
 
@@ -72,22 +74,27 @@ class PlacedLine:
         if state is self._state and line.x is self._from:
             return
         self._base.update()
-        u = state.u[line.part]
-        moves, (v, a) = np.count_nonzero(u) > 0, self._rates
+        moves, (v, a) = self._moves_by(state.u), self._rates
         unmoved = line.x is self._from and not (moves or self._moved)
         if not (unmoved and state.v is v and (velocities_alone or state.a is a)):
             self._v[:], self._a[:], self._rates = state.v[line.part], state.a[line.part], (state.v, state.a)
             if unmoved:
                 self.trial.put_rates()
             else:
-                self._u[:] = u
+                self._u[:] = state.u[line.part]
                 self.trial.place()
         self._state, self._from, self._moved = None if velocities_alone else state, line.x, moves
         self.count += 1
 
+    def _moves_by(self, increments: Array) -> bool:
+        """Whether increments of all local dofs move the line."""
+        if increments is not self._increments:
+            self._increments, self._moves = increments, bool(increments[self._line.part].any())
+        return self._moves
+
     def forget(self) -> None:
         """Place it anew next time, even at the same state."""
-        self._state = None
+        self._state = self._increments = None
 
     def differentiate(self, weights: Weights) -> None:
         """Write the maps of the tangent at the state."""

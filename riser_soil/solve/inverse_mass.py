@@ -191,7 +191,7 @@ class InverseMass:
     def __init__(self, system: System) -> None:
         self._system = system
         parts = [part for part in system.model.parts if part.active and "I" in part.traits.groups]
-        self._parts, self._nothing = joined(parts, accepted=True), np.zeros(system.numbering.size)
+        self._parts = joined(parts, accepted=True)
         lines = {line.name for line in system.model.lines}
         others = [part for part in parts if not lines & part.blocks().keys()]
         self._others = OtherMass(system, others) if any_of(system.comm, bool(others)) else None
@@ -215,7 +215,8 @@ class InverseMass:
         out, comm = np.zeros_like(force), self._system.comm
         if self._others is not None:
             self._others.write_accelerations(force, out)
-        rest = State(t, self._nothing, self._nothing, self._nothing)
+        nothing = self._system.no_increments
+        rest = State(t, nothing, nothing, nothing)
         for line, mass, parts in self._lines:
             if comm.rank == 0:
                 mass.K[...] = 0.0

@@ -93,7 +93,6 @@ class LineSolver(StepResults):
         self.iterations = 0
         self.packed, self._lines, self._couplings = packed, packed.lines, packed.couplings
         self._solved: State | None = None  # by this solver
-        self._nothing = np.zeros(system.numbering.size)
         self._no_work = {part.name: Work() for part in system.model.parts}
         self._committed = [part for packed in self._lines for part in packed.committed]
         self._committed += [part for each in self._couplings for part in each.parts]
@@ -163,7 +162,7 @@ class LineSolver(StepResults):
 
     def _end(self, trial: StepTrial) -> State:
         """The solution at the step's end."""
-        u, v, a = self._nothing.copy(), trial.begun.v.copy(), trial.begun.a.copy()
+        u, v, a = np.zeros(self.system.numbering.size), trial.begun.v.copy(), trial.begun.a.copy()
         for packed in self._lines:
             at = packed.line.part
             u[at], v[at], a[at] = packed.solution
@@ -173,7 +172,7 @@ class LineSolver(StepResults):
 
     def _forces(self) -> Forces:
         """Forces of the last trial; on the free dofs of soil they are in balance."""
-        forces = Forces.zeros(len(self._nothing))
+        forces = Forces.zeros(self.system.numbering.size)
         for packed in self._lines:
             at = packed.line.part
             forces.inertia[at], forces.force[at], forces.end[at] = packed.groups
@@ -223,7 +222,8 @@ class LineSolver(StepResults):
 
     def _place(self) -> str:
         """The largest residual, in words."""
-        residual, system = self._nothing.copy(), self.system
+        system = self.system
+        residual = np.zeros(system.numbering.size)
         for packed in self._lines:
             residual[packed.line.part] = packed.dofs.residual.ravel() / packed.dofs.levers.ravel()
         return place_of_largest(system, system.numbering.to_global(residual), system.numbering.first)

@@ -45,7 +45,7 @@ class CommittedStep:
     dt: float
 
     def __post_init__(self) -> None:
-        self.state = State(self.solved.t, np.zeros(self.solved.u.size), self.solved.v, self.solved.a)
+        self.state = State(self.solved.t, self.system.no_increments, self.solved.v, self.solved.a)
 
     @property
     def contact(self) -> Array | None:
