@@ -118,7 +118,9 @@ def call_until(given: Calls, failure: IntArray) -> None:
             break
 
 
-def in_turn(*bound: Bound, until: Packed | None = None) -> Bound:
-    """Bound kernels as one, called one after the other; until: an integer (1,), at which other than zero they end."""
-    given = Packed(calls(*bound))
-    return Bound(call_each, given) if until is None else Bound(call_until, given, until)
+NEVER = Packed(np.zeros(1, dtype=np.int64))
+
+
+def in_turn(*bound: Bound, until: Packed = NEVER) -> Bound:
+    """Bound kernels as one, called one after the other until a failure (1,) is written: an integer other than zero."""
+    return Bound(call_until, Packed(calls(*bound)), until)

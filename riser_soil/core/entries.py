@@ -118,7 +118,22 @@ def _unpack(kind: Kind) -> Any:
     lines = ["address, entry = rows.dtype, carray(same, 1).dtype"]
     lines += [f"{view} = carray(rows[n], {words}, {dtype})" for view, dtype in views.items()]
     lines += [f"return {_value(kind, count(), named)}"]
-    return njit(_function("unpack(rows, n, same)", lines, _value, {word: each for each, word in named.items()}))
+    given = {word: each for each, word in named.items()} | {_view_name(each): _view(each) for each in _arrays(kind)}
+    return njit(_function("unpack(rows, n, same)", lines, _value, given))
+
+
+@cache
+def _view(kind: ArrayKind) -> Any:
+    """A kernel that makes an array of its words, the first of which is number k of an argument's. What numba does for
+    an expression takes longer than what it does for a call.
+    """
+    shape = "".join(f"ints[k + {axis + 1}], " for axis in range(kind.ndim))
+    line = f"return carray(addresses[k], ({shape}), np.{np.dtype(kind.dtype).type.__name__})"
+    return njit(_function(f"{_view_name(kind)}(addresses, ints, k)", [line], _value, {}))
+
+
+def _view_name(kind: ArrayKind) -> str:
+    return f"view{kind.ndim}_{np.dtype(kind.dtype).name}"
 
 
 def _function(heading: str, lines: Iterable[str], like: Any, given: dict[str, Any]) -> Any:
@@ -135,19 +150,24 @@ def _tuples(kind: Kind) -> dict[type, str]:
     return {each: f"Tuple{n}" for n, each in enumerate(tuples)}
 
 
+def _arrays(kind: Kind) -> Iterator[ArrayKind]:
+    """The arrays within a kind, but those of `Calls`."""
+    if isinstance(kind, TupleKind) and kind.named is not Calls:
+        for each in kind.items:
+            yield from _arrays(each)
+    elif isinstance(kind, ArrayKind):
+        yield kind
+
+
 def _value(kind: Kind, words: Iterator[int], named: dict[type, str]) -> str:
     """Python's expression for a value that lies in the next words. named: what NamedTuples are called there."""
     if isinstance(kind, TupleKind):
         if kind.named is Calls:
-            dtypes: tuple[str, ...] = "entry", "address"
-            return f"{named[Calls]}({', '.join(_array(1, words, dtype) for dtype in dtypes)})"
+            each = (f"carray(addresses[{next(words)}], ints[{next(words)}], {dtype})" for dtype in ("entry", "address"))
+            return f"{named[Calls]}({', '.join(each)})"
         return f"{named.get(kind.named, '')}({''.join(f'{_value(each, words, named)}, ' for each in kind.items)})"
     if isinstance(kind, ArrayKind):
-        return _array(kind.ndim, words, f"np.{np.dtype(kind.dtype).type.__name__}")
+        at, *_ = (next(words) for _ in range(1 + kind.ndim))
+        return f"{_view_name(kind)}(addresses, ints, {at})"
     word = next(words)
     return {float: f"floats[{word}]", int: f"ints[{word}]", bool: f"ints[{word}] != 0"}[kind]
-
-
-def _array(ndim: int, words: Iterator[int], dtype: str) -> str:
-    at, *shape = (next(words) for _ in range(1 + ndim))
-    return f"carray(addresses[{at}], ({''.join(f'ints[{axis}], ' for axis in shape)}), {dtype})"

@@ -90,7 +90,6 @@ def add_integrand_at(weighted: Array, p: int, f: tuple[float, ...], F: Array, e:
     add_shares(F, 4 * len(D) * e, weighted, 4 * p, f, D)
 
 
-@njit
 def element_workspace(n: int, D: Size) -> Array:
     """Workspace for how what is conjugate to q of an element follows its n dofs (4, d, n)."""
     return np.empty((4, len(D), n))

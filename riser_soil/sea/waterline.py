@@ -187,7 +187,6 @@ def write_by_dofs(by_q: Array, P: Array, scale: float, S: Array, D: Size, R: Siz
                 S[a, d - 1, side * half + d + k] = scale * total
 
 
-@njit
 def tangent_workspace(ng: int, n: int, D: Size) -> TangentWorkspace:
     """Workspace for an element of n dofs with ng stations."""
     d = len(D)
