@@ -306,14 +306,16 @@ class TimeStepper:
         return self.scheme.renews_history(self.system.smooth)
 
     def _forces_after(self, step: AcceptedStep) -> Forces:
-        """Bulk forces at the state just accepted, in its own axes: the step's, unless contact has changed the rates."""
+        """Bulk forces at the state just accepted, in its own axes: the step's, unless contact has changed the rates.
+        Where nothing touches, group E has none.
+        """
         if not self.system.smooth:
             return self.newton.accepted.bulk_forces(self.before)
         forces, u = step.solution.forces, step.solution.state.u
         turned = [line for line in self.system.model.lines if line.turns_axes]
         if not turned:
             return forces
-        return Forces(*(_in_new_axes(turned, f, u) for f in (forces.inertia, forces.force, forces.end)))
+        return Forces(_in_new_axes(turned, forces.inertia, u), _in_new_axes(turned, forces.force, u), forces.end)
 
     def state(self) -> Saved:
         """The accepted state with its forces and energy, and what the next step is foreseen and judged by."""
