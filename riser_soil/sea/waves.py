@@ -80,7 +80,7 @@ def linear_waves(
 def _add_waves(sea: WaveField, motion: WaterMotion, t: Array, x: Array) -> None:
     _update(sea, t[0])
     rise, slope = _surface(sea, x)
-    z = x[:, 2] - sea.level
+    z = _heights(x, sea.level)
     at = wheeler(z, rise, slope, sea.train.depth) if sea.wheeler else vertical(z, sea.train.depth)
     for p in range(len(x)):
         motion.immersion[p] += rise[p]
@@ -100,13 +100,31 @@ def _update(sea: WaveField, t: float) -> None:
 
 
 @njit
+def _heights(x: Array, level: float) -> Array:
+    """Heights of points above a level [m]."""
+    z = np.empty(len(x))
+    for p in range(len(x)):
+        z[p] = x[p, 2] - level
+    return z
+
+
+@njit
+def _along(x: Array, cx: float, cy: float) -> Array:
+    """Places of points along a horizontal direction [m]."""
+    s = np.empty(len(x))
+    for p in range(len(x)):
+        s[p] = cx * x[p, 0] + cy * x[p, 1]
+    return s
+
+
+@njit
 def _surface(sea: WaveField, x: Array) -> tuple[Array, Array]:
     """Rise of the surface above its mean at points (n,), and its slope along x and y (n, 2)."""
     rise, slope = np.zeros(len(x)), np.zeros((len(x), 2))
     t, factor, _ = sea.now
     for g in range(len(sea.train.toward)):
         cx, cy = sea.train.toward[g]
-        eta, along = series.surface(sea.series, sea.train, t, g, cx * x[:, 0] + cy * x[:, 1])
+        eta, along = series.surface(sea.series, sea.train, t, g, _along(x, cx, cy))
         for p in range(len(x)):
             rise[p] += factor * eta[p]
             slope[p, 0] += factor * along[p] * cx
@@ -151,7 +169,7 @@ def _add_direction(motion: WaterMotion, sea: WaveField, g: int, x: Array, at: He
     """Add the flow of the waves of one direction."""
     t, factor, rate = sea.now
     cx, cy = sea.train.toward[g]
-    v, a = series.flow(sea.series, sea.train, t, g, cx * x[:, 0] + cy * x[:, 1], at.z)
+    v, a = series.flow(sea.series, sea.train, t, g, _along(x, cx, cy), at.z)
     for p in range(len(x)):
         value, by_z = factor * a.value[p] + rate * v.value[p], factor * a.by_z[p] + rate * v.by_z[p]
         _add(motion.velocity, motion.velocity_gradient, p, factor * v.value[p], factor * v.by_z[p], cx, cy, at.gradient)

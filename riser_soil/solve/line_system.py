@@ -1,7 +1,7 @@
 """The system of lines and bodies with what couples them: residual, tangent and solution by kernels.
 
 Each line has a band; what couples lines, or has unknowns of its own, is a border beside the bands (`dense_border`).
-Kernels are bound to their arguments once, so that an iteration is three calls.
+Kernels are bound to their arguments once, so that an iteration is two calls.
 """
 
 from __future__ import annotations
