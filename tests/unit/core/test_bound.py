@@ -10,7 +10,7 @@ import numba
 import numpy as np
 import pytest
 
-from riser_soil.core.bound import Bound, Packed, call_each, call_span, calls, spans
+from riser_soil.core.bound import Bound, Packed, call_each, call_span, calls, in_turn, spans
 from riser_soil.core.entries import WANTED, compile_wanted
 from tests.support.on_ranks import environment, finished
 
@@ -64,6 +64,21 @@ def test_kernels_are_called_in_turn() -> None:
     both = Packed(calls(*(Bound(add, Packed(given(np.full((2, 4), k))), Packed(out)) for k in (1.0, 2.0))))
     Bound(call_each, both)()
     np.testing.assert_allclose(out, 3 * 2.0 * (3 + 7 + 11))
+
+
+@numba.njit
+def copy_number(number: np.ndarray, out: np.ndarray) -> None:
+    out[0] = number[0]
+
+
+@pytest.mark.parametrize(("number", "called"), [(0, True), (2, False)])
+def test_kernels_in_turn_end_at_a_failure(number: int, called: bool) -> None:
+    failure, out = np.zeros(1, dtype=np.int64), np.zeros(2)
+    fails = Bound(copy_number, Packed(np.array([number])), Packed(failure))
+    after = Bound(add, Packed(given(np.ones((2, 4)))), Packed(out))
+    in_turn(fails, after, until=Packed(failure))()
+    assert failure[0] == number
+    assert out.any() == called
 
 
 def test_some_of_several_lists_of_kernels_are_called() -> None:
