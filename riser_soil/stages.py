@@ -121,12 +121,12 @@ def lay(assembly: Assembly, clock: Timer) -> tuple[State, LayingCounter | None]:
 
 def _release_bodies(assembly: Assembly, counter: LayingCounter, clock: Timer) -> None:
     """Solve for the equilibrium of bodies that were supported during laying, as their supports' forces fade out."""
-    assert assembly.hung is not None
+    assert assembly.bodies_and_joints is not None
     stage = StaticStage(name=LETTING_GO, kind="static")
     supported = System(assembly.comm, assembly.begin_laying(stage), clock)
     with destroyed_together(assembly.comm, supported.destroy):
         residual = total(supported.forces(State.at_rest(1.0, supported.numbering.size)))
-    reactions = {name: residual[body.part] for name, body in assembly.hung.bodies.items()}
+    reactions = {name: residual[body.part] for name, body in assembly.bodies_and_joints.bodies.items()}
     _solve_stage(assembly, assembly.begin_letting_go(stage, reactions), stage, None, counter, clock)
 
 
@@ -355,7 +355,7 @@ def _by_relaxation(run: StageRun) -> RelaxationResult:
     """Equilibrium at the load factor of the step, by dynamic relaxation."""
     assembly, system = run.assembly, run.stepper.system
     settings, weight = settings_of(assembly), assembly.scales.weight
-    loads = {} if assembly.hung is None else assembly.hung.loads
+    loads = {} if assembly.bodies_and_joints is None else assembly.bodies_and_joints.loads
     return relax(assembly.comm, system.model, weight, settings, system.clock, run.control.target, loads)
 
 

@@ -25,7 +25,7 @@ from riser_soil.scene.scene import Scene
 from riser_soil.scene.stages import DynamicStage, Stage, StaticStage
 
 if TYPE_CHECKING:
-    from riser_soil.assembly.bodies_and_joints import Hung
+    from riser_soil.assembly.bodies_and_joints import BodiesAndJoints
     from riser_soil.assembly.soil_assembly import SoilAssembly
     from riser_soil.contact.contact import RiserContact
     from riser_soil.contact.friction import CoulombFriction
@@ -40,15 +40,15 @@ LAYING, LETTING_GO = "laying", "letting go"  # stages before those of the scene
 class Assembly:
     """A scene's fields and lasting parts; what the scene lacks is None.
 
-    lines: what belongs to each, by name, "" of a scene's only one. sea: the water that all share. hung: bodies, and
-    joints between them and lines. stage: the last one begun.
+    lines: what belongs to each, by name, "" of a scene's only one. sea: the water that all share. bodies_and_joints:
+    bodies, and joints between them and lines. stage: the last one begun.
     """
 
     scene: Scene
     comm: Communicator
     lines: dict[str, LineAssembly]
     sea: SeaAssembly | None = None
-    hung: Hung | None = None
+    bodies_and_joints: BodiesAndJoints | None = None
     stage: Stage | None = None
 
     @property
@@ -75,7 +75,7 @@ class Assembly:
     @property
     def moving(self) -> list[LineField]:
         """Lines and bodies."""
-        bodies = [] if self.hung is None else self.hung.bodies.values()
+        bodies = [] if self.bodies_and_joints is None else self.bodies_and_joints.bodies.values()
         return [*(own.line for own in self.lines.values()), *bodies]
 
     @property
@@ -100,15 +100,16 @@ class Assembly:
     def lasting_parts(self) -> list[Part]:
         """Parts that act in all stages."""
         parts = [part for own in self.lines.values() for part in own.parts]
-        hung = [] if self.hung is None else self.hung.lasting
-        return [*parts, *self.contacts, *self.frictions, *([] if self.soil is None else self.soil.parts), *hung]
+        parts += [*self.contacts, *self.frictions, *([] if self.soil is None else self.soil.parts)]
+        return [*parts, *([] if self.bodies_and_joints is None else self.bodies_and_joints.lasting)]
 
     @cached_property
     def part_names(self) -> frozenset[str]:
         """Names of all parts that stages of the scene are solved with."""
         parts = [*self.lasting_parts, *(part for own in self.lines.values() for part in own.parts_of_stages)]
-        if self.hung is not None:
-            parts += [part for stage in self.scene.stages for part in self.hung.parts_of(self.scene, self.sea, stage)]
+        if (bodies_and_joints := self.bodies_and_joints) is not None:
+            for stage in self.scene.stages:
+                parts += bodies_and_joints.parts_of(self.scene, self.sea, stage)
         if self.soil is not None:
             parts += [*self.soil.renewal, *(self.soil.in_motion if self.scene.has_dynamic_stage else [])]
             parts += [] if self.soil.cushion is None else [self.soil.cushion]
@@ -145,32 +146,35 @@ class Assembly:
         joints close, while bodies are held.
         """
         moved = any(own.laying is not None for own in self.lines.values())
-        if moved or (self.hung is not None and (self.hung.joints_are_open or self.lets_go)):
+        open_joints = self.bodies_and_joints is not None and self.bodies_and_joints.joints_are_open
+        if moved or open_joints or self.lets_go:
             return StaticStage(name=LAYING, kind="static")
         return None
 
     @property
     def lets_go(self) -> bool:
         """Whether bodies come to rest before the scene's stages."""
-        return self.hung is not None and bool(self.hung.bodies) and self.scene.stages[0].kind != "dynamic"
+        has_bodies = self.bodies_and_joints is not None and bool(self.bodies_and_joints.bodies)
+        return has_bodies and self.scene.stages[0].kind != "dynamic"
 
     def begin_laying(self, stage: StaticStage) -> Model:
         """Set ends and joints in motion and name the parts, without a current's drag; bodies are held."""
         self.stage = stage
         parts = {name: own.lay(stage) for name, own in self.lines.items()}
-        return self._model(parts, [] if self.hung is None else self.hung.close())
+        return self._model(parts, [] if self.bodies_and_joints is None else self.bodies_and_joints.close())
 
     def begin_letting_go(self, stage: StaticStage, reactions: Mapping[str, Array]) -> Model:
         """Let bodies go that were held; reactions: on their dofs, by name [N, N.m]."""
-        assert self.hung is not None
+        assert self.bodies_and_joints is not None
         self.stage = stage
         parts = {name: own.lay(stage) for name, own in self.lines.items()}
-        return self._model(parts, self.hung.let_go(reactions))
+        return self._model(parts, self.bodies_and_joints.let_go(reactions))
 
     def begin(self, stage: Stage) -> Model:
         """Set the ends in motion and name the parts of a stage."""
         self.stage = stage
-        return self._model({name: own.begin(stage) for name, own in self.lines.items()}, self._hung_in(stage))
+        parts = {name: own.begin(stage) for name, own in self.lines.items()}
+        return self._model(parts, self._of_bodies_and_joints(stage))
 
     def resume(self) -> tuple[Stage, Model]:
         """The last stage of those begun, its ends set in motion, and its parts: of an assembly that was restored."""
@@ -178,14 +182,15 @@ class Assembly:
         *before, stage = (stage for stage in self.scene.stages if stage.name in begun)
         self.stage = stage
         parts = {name: own.resume(before, stage) for name, own in self.lines.items()}
-        return stage, self._model(parts, self._hung_in(stage))
+        return stage, self._model(parts, self._of_bodies_and_joints(stage))
 
     def stages_by_line(self, stage: Stage) -> list[tuple[LineAssembly, Stage]]:
         """Each line, and a stage of the scene as it sees it."""
         return [(own, own.own_stage(stage)) for own in self.lines.values()]
 
-    def _hung_in(self, stage: Stage) -> list[Part]:
-        return [] if self.hung is None else self.hung.parts_in(self.scene, self.sea, stage)
+    def _of_bodies_and_joints(self, stage: Stage) -> list[Part]:
+        present = self.bodies_and_joints
+        return [] if present is None else present.parts_in(self.scene, self.sea, stage)
 
     def state(self) -> Saved:
         """The state of the prescribed motions; fields and parts have states of their own."""
@@ -197,10 +202,10 @@ class Assembly:
         else:
             self.riser.restore(saved)
 
-    def _model(self, of_lines: Mapping[str, list[Part]], hung: list[Part]) -> Model:
+    def _model(self, of_lines: Mapping[str, list[Part]], of_bodies_and_joints: list[Part]) -> Model:
         stage, soil = self.stage, self.soil
         assert stage is not None
-        parts = [*(part for each in of_lines.values() for part in each), *hung]
+        parts = [*(part for each in of_lines.values() for part in each), *of_bodies_and_joints]
         on_ground, model = [*self.contacts, *self.frictions], partial(Model, self.moving, joined=joined)
         if soil is None:
             return model([*parts, *on_ground])
@@ -293,9 +298,9 @@ def build(scene: Scene, comm: Communicator) -> Assembly:
         with placing(name):
             assembly.lines[name] = line_assembly(view, assembly.sea, name or "riser", comm.rank == 0, turns)
     if scene.bodies or scene.joints:
-        from riser_soil.assembly.bodies_and_joints import hung_of
+        from riser_soil.assembly.bodies_and_joints import bodies_and_joints_of
 
-        assembly.hung = hung_of(scene, assembly.lines, comm.rank == 0)
+        assembly.bodies_and_joints = bodies_and_joints_of(scene, assembly.lines, comm.rank == 0)
     if scene.contact is not None:
         from riser_soil.assembly.ground import add_ground
 

@@ -34,7 +34,7 @@ CLOSED = 1e-6  # of a line's length: a first gap of a joint that needs no stage 
 
 
 @dataclass(eq=False)
-class Hung:
+class BodiesAndJoints:
     """Bodies by name, and all joints; None without any.
 
     given, weights: what each body is, and its weight and buoyancy. contacts, frictions: of those that may touch the
@@ -114,7 +114,7 @@ def _drag(water: StageWater, body: MovingBody, given: BodyProperties) -> BodyDra
     return BodyDrag(body, given, flow, density, buoyancy, np.inf if level is None else level, not water.moves)
 
 
-def hung_of(scene: Scene, lines: Mapping[str, LineAssembly], active: bool) -> Hung:
+def bodies_and_joints_of(scene: Scene, lines: Mapping[str, LineAssembly], active: bool) -> BodiesAndJoints:
     """The scene's bodies and joints. active: whether this rank evaluates them, as it does the lines."""
     given = {name: _properties(scene, body) for name, body in scene.bodies.items()}
     bodies = {name: _body(scene, name, given[name], active) for name in scene.bodies}
@@ -126,7 +126,7 @@ def hung_of(scene: Scene, lines: Mapping[str, LineAssembly], active: bool) -> Hu
     is_open = joints is not None and bool((joints.first_gap > closed).any() or (joints.first_turn > TURNED).any())
     weights = {name: _weight(scene, body, given[name]) for name, body in bodies.items()}
     touching = on_seabed(scene, lines, bodies, given, weights)
-    return Hung(bodies, joints, given, weights, is_open, *touching)
+    return BodiesAndJoints(bodies, joints, given, weights, is_open, *touching)
 
 
 def _properties(scene: Scene, given: BodyScene) -> BodyProperties:

@@ -69,8 +69,8 @@ def _sharp_bends(scene: Scene) -> tuple[Array, Array] | None:
         cable = catenary_between(scene, elements, attachments, *places)
     except SceneError:  # said where the line is built
         return None
-    hung = np.array([each.arc for each in attachments if 0.0 < each.arc < elements.arc[-1]])
-    sharp = [_kinks(cable, elements, hung)]
+    attached = np.array([each.arc for each in attachments if 0.0 < each.arc < elements.arc[-1]])
+    sharp = [_kinks(cable, elements, attached)]
     if not (start.jointed or end.jointed):  # else where its ends come to rest is not known before they do
         bends, lengths = _bends(cable, elements)
         if cable.heaped and any(isinstance(each, DynamicStage) and each.motion for each in scene.stages):
@@ -90,12 +90,14 @@ def _bends(cable: Catenary, elements: Elements) -> tuple[Array, Array]:
     return arcs[sharp], OF_RADIUS * radius[sharp]
 
 
-def _kinks(cable: Catenary, elements: Elements, hung: Array) -> tuple[Array, Array]:
-    """Kinks where something hangs at arc lengths hung (m,): arc lengths and elements' lengths beside them (n,) [m]."""
+def _kinks(cable: Catenary, elements: Elements, attached: Array) -> tuple[Array, Array]:
+    """Kinks where something is attached, at arc lengths (m,) [m]: arc lengths of those, and elements' lengths beside
+    them (n,) [m].
+    """
     least = TAKEN_UP * ARCH * elements.arc[-1] / float(elements.length.max())
-    angle = cable.turns(hung)
+    angle = cable.turns(attached)
     kinked = angle**2 > least
-    return hung[kinked], TAKEN_UP * ARCH * elements.arc[-1] / angle[kinked] ** 2
+    return attached[kinked], TAKEN_UP * ARCH * elements.arc[-1] / angle[kinked] ** 2
 
 
 def _cut(segments: tuple[Segment, ...], arcs: Array, lengths: Array) -> Iterator[Segment]:

@@ -21,7 +21,7 @@ from riser_soil.core.communicator import Communicator
 from riser_soil.scene.scene import Scene
 
 if TYPE_CHECKING:
-    from riser_soil.assembly.bodies_and_joints import Hung
+    from riser_soil.assembly.bodies_and_joints import BodiesAndJoints
     from riser_soil.assembly.soil_assembly import SoilAssembly
 
 HEADS = ("line type", "from m", "to m", "OD m", "ID m", "empty kg/m", "filled kg/m", "in air N/m", "in water N/m")
@@ -64,7 +64,7 @@ def describe(scene: Scene, place: Callable[[str], str] = str) -> str:
     lines += [*wave_theory(assembly), *(f"warning: {warning}" for warning in warnings), _verdict(warnings)]
     for name, line in assembly.lines.items():
         lines += [*_unknowns(line, name, comm)]
-    lines += [*_hung(assembly), _memory_line(assembly), *_results(size), *_model(inventory(assembly))]
+    lines += [*_bodies_and_joints(assembly), _memory_line(assembly), *_results(size), *_model(inventory(assembly))]
     return "\n".join(lines)
 
 
@@ -101,30 +101,32 @@ def _model(known: Inventory) -> Iterator[str]:
         yield "not in the model: " + ", ".join(without)
 
 
-def _hung(assembly: Assembly) -> Iterator[str]:
+def _bodies_and_joints(assembly: Assembly) -> Iterator[str]:
     """Bodies, and how stiff joints are that are rigid."""
-    hung = assembly.hung
-    for name, body in ({} if hung is None else hung.bodies).items():
+    bodies_and_joints = assembly.bodies_and_joints
+    for name, body in ({} if bodies_and_joints is None else bodies_and_joints.bodies).items():
         given = assembly.scene.bodies[name]
         buoyancy = assembly.scene.water.density * given.volume if assembly.scene.water is not None else 0.0
         net = assembly.scene.gravity * (given.mass - buoyancy)
         yield f"body {name}: {unknowns(assembly.comm, body)} unknowns, weight less buoyancy {net:.4g} N"
-        if hung is not None and assembly.scene.seabed is not None:
-            yield f"body {name}: {_touches(hung, name) or why_apart(assembly.scene, name)}"
-    for joint in () if hung is None or hung.joints is None else hung.joints.joints:
+        if bodies_and_joints is not None and assembly.scene.seabed is not None:
+            yield f"body {name}: {_touches(bodies_and_joints, name) or why_apart(assembly.scene, name)}"
+    joints = None if bodies_and_joints is None else bodies_and_joints.joints
+    for joint in () if joints is None else joints.joints:
         turns = f" and {joint.rotation:.4g} N.m/rad" if joint.rotation else ""
         yield f"joint {joint.name}: {joint.translation:.4g} N/m{turns}"
 
 
-def _touches(hung: Hung, name: str) -> str:
+def _touches(bodies_and_joints: BodiesAndJoints, name: str) -> str:
     """How a body touches the seabed; empty where it doesn't."""
-    if name not in hung.contacts:
+    if name not in bodies_and_joints.contacts:
         return ""
-    contact = hung.contacts[name]
+    contact, rubs = bodies_and_joints.contacts[name], bodies_and_joints.frictions.get(name)
     where = "a point" if len(contact.points) == 1 else f"{len(contact.points)} points"
-    friction = f", friction coefficient {hung.frictions[name].coefficient:.4g}" if name in hung.frictions else ""
+    friction = "" if rubs is None else f", friction coefficient {rubs.coefficient:.4g}"
     sizes = f"radius {contact.radius:.4g} m, width {contact.length:.4g} m"
-    sunk = f"sinks in by {contact.sunk_by(hung.weights[name].net):.4g} m under its weight less buoyancy"
+    net = bodies_and_joints.weights[name].net
+    sunk = f"sinks in by {contact.sunk_by(net):.4g} m under its weight less buoyancy"
     return f"touches the seabed at {where}, {sizes}{friction}; {sunk}"
 
 

@@ -35,10 +35,10 @@ def physical_warnings(assembly: Assembly) -> Iterator[str]:
         of_its_own = names[0] in warning.partition(":")[0].split(".")
         yield warning if of_its_own else f"{', '.join(names)}: {warning}"
     yield from _body_loads_that_end(assembly.scene)
-    if assembly.hung is not None and assembly.hung.contacts:
+    if (bodies_and_joints := assembly.bodies_and_joints) is not None and bodies_and_joints.contacts:
         from riser_soil.checks.body_plausibility import body_warnings
 
-        yield from body_warnings(assembly.hung)
+        yield from body_warnings(bodies_and_joints)
 
 
 def _options_without_petsc(assembly: Assembly) -> Iterator[str]:

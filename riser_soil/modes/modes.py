@@ -264,8 +264,8 @@ class RiserAtRest(NamedTuple):
 
     @property
     def bodies(self) -> list[MovingBody]:
-        hung = self.assembly.hung
-        return [] if hung is None else [*hung.bodies.values()]
+        bodies_and_joints = self.assembly.bodies_and_joints
+        return [] if bodies_and_joints is None else [*bodies_and_joints.bodies.values()]
 
     def whole(self, free: Array) -> Array:
         """A local array (size,) of the free dofs' values, zero where prescribed."""
@@ -280,7 +280,7 @@ def at_rest(scene: Scene, stage: str | None = None) -> RiserAtRest:
     stages = stages_up_to(scene, stage)
     assembly = build(sized(scene), communicator_of(scene))
     solve_stages(assembly, StatelessObserver(), stages)
-    of_bodies = [] if assembly.hung is None else assembly.hung.frictions.values()
+    of_bodies = [] if assembly.bodies_and_joints is None else assembly.bodies_and_joints.frictions.values()
     for friction in (*assembly.frictions, *of_bodies):
         friction.stick()
     if assembly.soil is not None:
@@ -323,11 +323,12 @@ def _linearised(assembly: Assembly, stage: Stage) -> RiserAtRest:
 
 def _with_mass(assembly: Assembly) -> list[Part]:
     """Mass of lines and bodies and added mass of their water, which stands still and has a level surface."""
-    hung, parts = assembly.hung, [part for own in assembly.lines.values() for part in _of_line(own)]
-    if hung is not None and hung.bodies:
+    parts = [part for own in assembly.lines.values() for part in _of_line(own)]
+    if (bodies_and_joints := assembly.bodies_and_joints) is not None and bodies_and_joints.bodies:
         from riser_soil.bodies.inertia import BodyInertia
 
-        parts += [BodyInertia(body, hung.given[name].mass_matrix()) for name, body in hung.bodies.items()]
+        masses = {name: given.mass_matrix() for name, given in bodies_and_joints.given.items()}
+        parts += [BodyInertia(body, masses[name]) for name, body in bodies_and_joints.bodies.items()]
     return parts
 
 

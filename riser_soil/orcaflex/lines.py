@@ -57,17 +57,18 @@ def line_of(file: DataFile, item: Item) -> LineWithEnds | None:
     if not (both and parts):
         return None
     length = sum(segment["length"] for segment, *_ in parts)
-    hung = _attachments(item, length)
+    attachments = _attachments(item, length)
     if both[0].height > both[1].height:
         both, parts = both[::-1], parts[::-1]
-        hung = [each | {"at": [length - at for at in each["at"]][::-1]} for each in hung]
+        attachments = [each | {"at": [length - at for at in each["at"]][::-1]} for each in attachments]
     clamps = [_clamping(*parts[n][:2]) for n in (0, -1)]
     lower, upper = both
     supports = {
         key: _support(end, lower, upper, clamp)
         for key, end, clamp in zip(("start", "end"), both, clamps, strict=True)
     }
-    data = {"segments": [segment for segment, *_ in parts]} | ({"attachments": hung} if hung else {}) | supports
+    data: dict[str, Any] = {"segments": [segment for segment, *_ in parts]}
+    data |= ({"attachments": attachments} if attachments else {}) | supports
     data |= {"contents": filled} if (filled := _contents(item)) else {}
     types = {segment["line_type"]: pipe for segment, pipe, _ in parts}
     origins: dict[KeyPath, int] = {(): item.line("Name")}

@@ -23,7 +23,7 @@ _REACTIONS = (  # path below an end, words, unit, how many of it are one of SI
     ("angle_deg", "angle from the vertical", "°", 1.0),
 )
 _SPOKEN = {"bodies": "body", "joints": "joint", "clearance": "clearance"}
-_OF_HUNG = {  # rows of bodies, joints and clearances
+_OF_BODIES_AND_JOINTS = {  # rows of bodies, joints and clearances
     "bodies": {
         "position": Row("position", "m"),
         "rotation": Row("rotation", "°", math.degrees(1.0)),
@@ -97,14 +97,14 @@ def _sides(stage: Mapping[str, Any], extremes: Mapping[str, float], scale: float
     ]
 
 
-def hung_table(summary: Mapping[str, Any]) -> ReportTable:
+def bodies_and_joints_table(summary: Mapping[str, Any]) -> ReportTable:
     """Where bodies are in each stage, what acts in joints, and how near lines come to each other."""
     rows = [
         [stage["name"], *row]
         for stage in summary["stages"]
-        for group, named in _OF_HUNG.items()
+        for group, named in _OF_BODIES_AND_JOINTS.items()
         for name, found_here in stage.get(group, {}).items()
-        for row in _hung_rows(stage["kind"], f"{_SPOKEN[group]} {name}", named, found_here)
+        for row in _body_and_joint_rows(stage["kind"], f"{_SPOKEN[group]} {name}", named, found_here)
     ]
     head = ("load step", "of", "quantity", "unit", "at the end", "min", "at t [s]", "max", "at t [s]")
     note = (
@@ -114,7 +114,9 @@ def hung_table(summary: Mapping[str, Any]) -> ReportTable:
     return compact(ReportTable(head, rows, note))
 
 
-def _hung_rows(kind: str, of: str, named: Mapping[str, Row], known: Mapping[str, Any]) -> Iterator[list[str]]:
+def _body_and_joint_rows(
+    kind: str, of: str, named: Mapping[str, Row], known: Mapping[str, Any]
+) -> Iterator[list[str]]:
     for key, row in named.items():
         if key not in known:
             continue

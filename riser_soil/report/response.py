@@ -15,7 +15,7 @@ from riser_soil.plots.side_by_side import sheets
 from riser_soil.report import health
 from riser_soil.report.captions import in_caption
 from riser_soil.report.document import Block, Paragraph, PictureBlock, ReportSection, TableBlock, ref
-from riser_soil.report.extremes import hung_table, in_field_words, reactions_table
+from riser_soil.report.extremes import bodies_and_joints_table, in_field_words, reactions_table
 from riser_soil.report.governing import governing, of_stage, unit_of, uses
 from riser_soil.report.sources import LoadCase, Sources, is_seed
 from riser_soil.report.statics import MOST_CURVES, static_stage
@@ -66,14 +66,15 @@ def governing_case(sources: Sources) -> LoadCase:
 def chapter(sources: Sources) -> ReportSection:
     """Nothing of runs in which nothing goes along time: their results are those of the static configuration."""
     if not any(moving(case, None) for case in sources.cases):
-        return ReportSection("Extremes", [ReportSection("Bodies, joints and clearance", [*_hung(sources)])])
+        only = ReportSection("Bodies, joints and clearance", [*_bodies_and_joints(sources)])
+        return ReportSection("Extremes", [only])
     return ReportSection(
         "Extremes",
         [
             ReportSection("Load cases side by side", [*_side_by_side(sources)]),
             ReportSection("Characteristic extremes", [*_characteristic(sources)]),
             ReportSection("Governing load case", [*_governing(sources)]),
-            ReportSection("Bodies, joints and clearance", [*_hung(sources)]),
+            ReportSection("Bodies, joints and clearance", [*_bodies_and_joints(sources)]),
             ReportSection("Comparison of load cases", [*_compared(sources)]),
         ],
     )
@@ -251,9 +252,9 @@ def _picture(each: Sheet, records: StageRecords) -> PictureBlock:
     return PictureBlock(f"{in_caption(each)}, load step {records.name}", Curves(each.bare))
 
 
-def _hung(sources: Sources) -> Iterator[Block]:
+def _bodies_and_joints(sources: Sources) -> Iterator[Block]:
     for name, run in sources.whole.items():
-        table = hung_table(run.summary)
+        table = bodies_and_joints_table(run.summary)
         if table:
             yield TableBlock(f"Bodies, joints and clearance: {name}", table, words=3)
 

@@ -20,10 +20,10 @@ from riser_soil.core.saved_state import Saved, Stateful, gathered, restore_all
 from riser_soil.core.snapshot import SoilSnapshot, StepRecord, StepStatistics, stacked
 from riser_soil.errors import Interruption, MemoryShortageError, SolveError
 from riser_soil.interruption import uninterrupted
+from riser_soil.results.bodies_and_joints_figures import bodies_and_joints_reader, bodies_and_joints_values
 from riser_soil.results.checkpoint import RunCheckpoints
 from riser_soil.results.energy_ledger import EnergyLedger
 from riser_soil.results.functional_run import line_checks
-from riser_soil.results.hung_figures import hung_reader, hung_values
 from riser_soil.results.instants import InstantReader
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.plausibility_checks import PlausibilityChecks
@@ -57,9 +57,9 @@ class Observer:
         lines, fields = assembly.lines, known_fields(assembly)
         checks = {name: line_checks(line, name) for name, line in lines.items()} if recorder is not None else {}
         self._instants = {name: InstantReader(line, fields[name], checks.get(name)) for name, line in lines.items()}
-        self._hung = hung_reader(assembly)
+        self._bodies_and_joints = bodies_and_joints_reader(assembly)
         self._buffer = StepBuffer()
-        self._plausibility = PlausibilityChecks(assembly, self._hung)
+        self._plausibility = PlausibilityChecks(assembly, self._bodies_and_joints)
         self._inventory = inventory(assembly)
         self._checkpoints = RunCheckpoints(assembly, recorder)
 
@@ -90,9 +90,9 @@ class Observer:
                     settings = assembly.scene.output.checkpoint
                     keeping = Keeping(goes_on, end=settings is not None and settings.keep)
                     arcs = {name: line.line.arc for name, line in assembly.lines.items()}
-                    reader = hung_reader(assembly)
-                    hung = {} if reader is None else reader.variables
-                    recorder = Recorder.open(folder, facts, arcs, mesh, text, fields, force, keeping, hung)
+                    reader = bodies_and_joints_reader(assembly)
+                    more = {} if reader is None else reader.variables
+                    recorder = Recorder.open(folder, facts, arcs, mesh, text, fields, force, keeping, more)
             with recorder or nullcontext():
                 observer = cls(assembly, clock, recorder, progress, peaks)
                 try:
@@ -132,7 +132,8 @@ class Observer:
         soil = self._soil()
         if self._recorder is not None:
             records = {name: reader.record_of([reader.copy(stepper)]) for name, reader in self._instants.items()}
-            self._recorder.begin_at(records, soil, stacked([hung_values(self._hung, stepper.now)]))
+            bodies_and_joints = bodies_and_joints_values(self._bodies_and_joints, stepper.now)
+            self._recorder.begin_at(records, soil, stacked([bodies_and_joints]))
             if self._peaks is not None:
                 self._peaks.record([0.0], records)
 
@@ -152,9 +153,9 @@ class Observer:
             record = StepRecord(step.t, health, self._balance.ledger)
             at_rest = due.series and isinstance(self._stage, StaticStage)
             lines = {name: reader.copy(stepper, at_rest) for name, reader in self._instants.items()}
-            hung = hung_values(self._hung, stepper.now)
+            bodies_and_joints = bodies_and_joints_values(self._bodies_and_joints, stepper.now)
             pressed = self._plausibility.pressed_soil(stepper.now) if due.series else None
-            self._buffer.add(BufferedStep(record, due, lines, hung, pressed, soil))
+            self._buffer.add(BufferedStep(record, due, lines, bodies_and_joints, pressed, soil))
             static = isinstance(self._stage, StaticStage)
             if last or static or self._buffer.full or self._recorder.flush_is_due:
                 self.flush()
@@ -169,8 +170,8 @@ class Observer:
         made, pictured = [each.record for each in steps], any(each.due.pictures for each in steps)
         copies = {name: [each.lines[name] for each in steps] for name in self._instants}
         records = {name: reader.record_of(copies[name], misfits=pictured) for name, reader in self._instants.items()}
-        hung = stacked([each.hung for each in steps])
-        recorder.accept(made, [each.due for each in steps], records, steps[-1].soil, hung)
+        bodies_and_joints = stacked([each.bodies_and_joints for each in steps])
+        recorder.accept(made, [each.due for each in steps], records, steps[-1].soil, bodies_and_joints)
         if self._peaks is not None:
             self._peaks.record([step.t for step in made], records)
         times = np.array([recorder.time_at(step.t) for step in made])

@@ -18,8 +18,8 @@ import numpy as np
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, unpacked
 from riser_soil.core.snapshot import Record, Records, SoilMesh, SoilSnapshot
+from riser_soil.results.bodies_and_joints_figures import BodiesAndJointsExtremes
 from riser_soil.results.figures import FIGURE_NAMES, Extremes, final_state, pack, places_of
-from riser_soil.results.hung_figures import HungExtremes
 from riser_soil.results.soil_extremes import SoilExtremes, places
 
 _ALTERNATING = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / 16.0  # what alternates of five steps, in the middle one
@@ -196,7 +196,7 @@ class RunPeaks:
 
     def __init__(self, mesh: SoilMesh | None = None, on_soil: str = "") -> None:
         self.stages: list[dict[str, StagePeaks]] = []
-        self._hung: list[HungExtremes] = []
+        self._bodies_and_joints: list[BodiesAndJointsExtremes] = []
         self._places, self._on_soil = None if mesh is None else places(mesh), on_soil
 
     def begin_stage(self, name: str, kind: str, duration: float = 1.0, lines: Iterable[str] = ("",)) -> None:
@@ -204,7 +204,7 @@ class RunPeaks:
         of a dynamic one [s].
         """
         self.stages.append({line: StagePeaks(name, kind, duration) for line in lines})
-        self._hung.append(HungExtremes())
+        self._bodies_and_joints.append(BodiesAndJointsExtremes())
         if kind != "static" and len(self.stages) > 1:
             for line, own in self.stages[-1].items():
                 own.begin(self.stages[-2][line])
@@ -214,12 +214,12 @@ class RunPeaks:
         times: Sequence[float],
         records: Records,
         soil: SoilSnapshot | None = None,
-        hung: Mapping[str, Array] | None = None,
+        bodies_and_joints: Mapping[str, Array] | None = None,
     ) -> None:
-        """Follow accepted steps in turn. soil: at the last of them, where recorded; hung: values of joints and
-        clearances by path, a row a step.
+        """Follow accepted steps in turn. soil: at the last of them, where recorded; bodies_and_joints: values of those
+        and of clearances by path, a row a step.
         """
-        self._hung[-1].update(np.array(times), hung or {})
+        self._bodies_and_joints[-1].update(np.array(times), bodies_and_joints or {})
         for line, record in records.items():
             stage = self.stages[-1][line]
             stage.update(times, record)
@@ -228,8 +228,8 @@ class RunPeaks:
 
     def as_summary(self, which: str) -> dict[str, Any]:
         """The share of a summary that key results are read from; which: sampled, of_nodes, peaks or smooth."""
-        each = zip(self.stages, self._hung, strict=True)
-        return {"stages": [_stage_summary(of_lines, which) | hung.nested for of_lines, hung in each]}
+        each = zip(self.stages, self._bodies_and_joints, strict=True)
+        return {"stages": [_stage_summary(of_lines, which) | extremes.nested for of_lines, extremes in each]}
 
     def state(self) -> Saved:
         begun = [
@@ -240,7 +240,7 @@ class RunPeaks:
     def restore(self, saved: Saved) -> None:
         begun = unpacked(saved["begun"])
         self.stages = [{line: StagePeaks(*stage) for line, stage in of_lines.items()} for of_lines in begun]
-        self._hung = [HungExtremes() for _ in self.stages]
+        self._bodies_and_joints = [BodiesAndJointsExtremes() for _ in self.stages]
         restore_all(self._numbered, saved)
 
     @property

@@ -17,7 +17,7 @@ from riser_soil.results.step_buffer import BufferedStep
 from riser_soil.scene.stages import Stage
 
 if TYPE_CHECKING:
-    from riser_soil.results.hung import HungReader
+    from riser_soil.results.bodies_and_joints import BodiesAndJointsReader
 
 
 class PlausibilityChecks:
@@ -26,10 +26,10 @@ class PlausibilityChecks:
     Results are checked on the rank that has the recorder; `begin_stage` and `measure_soil_boundary` are for all ranks.
     """
 
-    def __init__(self, assembly: Assembly, hung: HungReader | None) -> None:
+    def __init__(self, assembly: Assembly, bodies_and_joints: BodiesAndJointsReader | None) -> None:
         self._lines = {name: Plausibility(line) for name, line in assembly.lines.items()}
         self._soil, self._name_on_soil = _soil_plausibility(assembly), assembly.name_on_soil
-        self._hung = hung
+        self._bodies_and_joints = bodies_and_joints
 
     def begin_stage(self, stage: Stage) -> None:
         """Begin the checks of a stage."""
@@ -67,8 +67,8 @@ class PlausibilityChecks:
                 if (pressed := steps[n].pressed) is not None:
                     self._soil.follow(float(times[n]), pressed, records[name].at(n))
             tally.lines[name].implausible += self._soil.warnings()
-        if self._hung is not None:
-            tally.implausible = tuple(self._hung.warnings(tally.hung.nested))
+        if self._bodies_and_joints is not None:
+            tally.implausible = tuple(self._bodies_and_joints.warnings(tally.bodies_and_joints.nested))
 
     @property
     def owners(self) -> dict[str, Stateful]:

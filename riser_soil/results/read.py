@@ -37,8 +37,8 @@ class SoilFrame:
     cells: IntArray  # (nc, 4, 8 or 10), VTK's node order
     fields: dict[str, Array]  # displacement (nv, 3) m; von_mises_stress Pa, equivalent_plastic_strain (nc,)
 
-HUNG = ("bodies", "joints", "clearance")  # groups beside those of several lines
-OF_ALL = ("lines", *HUNG)  # keys of a stage of several lines
+BODIES_AND_JOINTS = ("bodies", "joints", "clearance")  # groups beside those of several lines
+OF_ALL = ("lines", *BODIES_AND_JOINTS)  # keys of a stage of several lines
 
 
 class Run:
@@ -137,11 +137,11 @@ class Run:
             return frozenset([*own, *(name for name in file if isinstance(file[name], h5py.Dataset))])
 
     @cached_property
-    def hung(self) -> dict[str, tuple[str, bool]]:
+    def bodies_and_joints(self) -> dict[str, tuple[str, bool]]:
         """Units of what is known of bodies, joints and clearances, and whether it is a vector, by its path."""
         units = dict[str, tuple[str, bool]]()
         with self._open(run_folder.SERIES) as file:
-            for path in (f"{kind}/{name}" for kind in HUNG for name in file.get(kind, ())):
+            for path in (f"{kind}/{name}" for kind in BODIES_AND_JOINTS for name in file.get(kind, ())):
                 of_one = ((key, each) for key, each in file[path].items() if isinstance(each, h5py.Dataset))
                 units |= {f"{path}/{key}": (str(each.attrs["units"]), each.ndim > 1) for key, each in of_one}
         return units
@@ -160,8 +160,8 @@ class Run:
         own: dict[str, Any] = {"stages": [_stage_of_line(stage, line) for stage in whole["stages"]]}
         if bars := whole.get("error_bars"):
             own["error_bars"] = bars | {"quantities": [each for each in bars["quantities"] if each["of"] == line]}
-        if hung := whole.get("hang_off"):
-            own["hang_off"] = hung.get(line)
+        if hang_offs := whole.get("hang_off"):
+            own["hang_off"] = hang_offs.get(line)
         return whole | own
 
     @cached_property

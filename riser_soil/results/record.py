@@ -48,7 +48,7 @@ class LastState:
     """The last recorded state, one instant as if of many, and the files that it has been written to."""
 
     records: Records
-    hung: Mapping[str, Array]
+    bodies_and_joints: Mapping[str, Array]
     soil: SoilSnapshot | None
     written: DueOutputs
     stamp: float = 0.0  # s, of its record in the series
@@ -70,7 +70,7 @@ class Recorder:
         soil_mesh: SoilMesh | None,
         fields: Mapping[str, tuple[str, ...]],
         keeping: Keeping,
-        hung: Mapping[str, Variable],
+        bodies_and_joints: Mapping[str, Variable],
     ) -> None:
         self._tallies, self._keeping = Tallies(facts, [*arcs], soil_mesh), keeping
         self._lock, self._folder = lock, folder
@@ -87,7 +87,7 @@ class Recorder:
             sections=facts.sections,
             offsets=facts.offsets,
             goes_on=keeping.goes_on,
-            more=hung,
+            more=bodies_and_joints,
         )
         nodes = {name: arc.size for name, arc in arcs.items()}
         self._frames = RunFrames(folder, nodes, soil_mesh, fields, keeping.goes_on)
@@ -108,12 +108,12 @@ class Recorder:
         fields: Mapping[str, tuple[str, ...]] | None = None,
         force: bool = False,
         keeping: Keeping | None = None,
-        hung: Mapping[str, Variable] | None = None,
+        bodies_and_joints: Mapping[str, Variable] | None = None,
     ) -> Self:
         """Takes the folder over, until it is closed, and lays the files out.
 
         arcs: (nn,) m, by the name of the line, "" of the only one. scene_text: the resolved scene, kept as scene.yaml.
-        fields: of `outputs.choices()`, by line; None for all. hung: what is recorded of bodies and joints, by path.
+        fields: of `outputs.choices()`, by line; None for all. bodies_and_joints: what is recorded of them, by path.
         Raises SceneError for an unknown field and for a folder that the run may not have (see `ownership`). A run that
         goes on is to be restored next.
         """
@@ -123,7 +123,7 @@ class Recorder:
         try:
             with _reported_when_full(folder):
                 run_folder.write_atomically(folder / run_folder.SCENE, sealed(scene_text))
-                recorder = cls(lock, folder, facts, arcs, soil_mesh, wanted, keeping, hung or {})
+                recorder = cls(lock, folder, facts, arcs, soil_mesh, wanted, keeping, bodies_and_joints or {})
                 if not keeping.goes_on:
                     recorder.flush()
         except BaseException:
@@ -185,14 +185,15 @@ class Recorder:
         self._series.begin_stage(name)
 
     def begin_at(
-        self, records: Records, soil: SoilSnapshot | None = None, hung: Mapping[str, Array] | None = None
+        self, records: Records, soil: SoilSnapshot | None = None, bodies_and_joints: Mapping[str, Array] | None = None
     ) -> None:
         """The state that the run begins with, where its first stage is not static: recorded at time zero.
 
-        records, hung: of one instant, as if of many.
+        records, bodies_and_joints: of one instant, as if of many.
         """
         stamp = self._tallies.begin_at(records)
-        self._record(records, hung or {}, [DueOutputs(series=True, pictures=True)], [stamp], soil)
+        due = [DueOutputs(series=True, pictures=True)]
+        self._record(records, bodies_and_joints or {}, due, [stamp], soil)
 
     def accept(
         self,
@@ -200,18 +201,18 @@ class Recorder:
         due: Sequence[DueOutputs],
         records: Records,
         soil: SoilSnapshot | None = None,
-        hung: Mapping[str, Array] | None = None,
+        bodies_and_joints: Mapping[str, Array] | None = None,
     ) -> None:
         """Record accepted steps of the present stage, in turn.
 
         records: at the steps' ends. soil: at the last of them; needed where there is a soil mesh and pictures are due,
-        for no other step then. hung: of bodies and joints at the instants, by path.
+        for no other step then. bodies_and_joints: their values at the instants, by path.
         """
-        hung = hung or {}
-        times, stamps = self._tallies.accept(steps, due, records, hung)
+        bodies_and_joints = bodies_and_joints or {}
+        times, stamps = self._tallies.accept(steps, due, records, bodies_and_joints)
         self._series.steps({"step_time": times} | step_rows(steps, self._ledger))
         self._waiting += _STEP * len(steps)
-        self._record(records, hung, due, stamps, soil)
+        self._record(records, bodies_and_joints, due, stamps, soil)
         if self.flush_is_due or self._waiting > _MOST_WAITING:
             self.flush()
 
@@ -236,7 +237,7 @@ class Recorder:
         drawable = self._frames.drawable(soil)
         if not last.written.series:
             due = [DueOutputs(series=True, pictures=drawable)]
-            self._record(last.records, last.hung, due, [self._tallies.stamp()], soil)
+            self._record(last.records, last.bodies_and_joints, due, [self._tallies.stamp()], soil)
         elif drawable and not last.written.pictures:
             self._picture(last.stamp, series_rows([last.stamp], last.records, self._fields), 0, soil)
             last.written = DueOutputs(series=True, pictures=True)
@@ -313,22 +314,22 @@ class Recorder:
     def _record(
         self,
         records: Records,
-        hung: Mapping[str, Array],
+        bodies_and_joints: Mapping[str, Array],
         due: Sequence[DueOutputs],
         stamps: Sequence[float],
         soil: SoilSnapshot | None,
     ) -> None:
         """stamps: of those whose series is due."""
         last = {line: record.at(slice(-1, None)) for line, record in records.items()}
-        last_hung = {name: values[-1:] for name, values in hung.items()}
-        self._last = LastState(last, last_hung, soil, due[-1], stamps[-1] if due[-1].series else 0.0)
+        last_values = {path: values[-1:] for path, values in bodies_and_joints.items()}
+        self._last = LastState(last, last_values, soil, due[-1], stamps[-1] if due[-1].series else 0.0)
         recorded = [n for n, wanted in enumerate(due) if wanted.series]
         if not recorded:
             return
         if len(recorded) < len(due):
             records = {line: record.at(recorded) for line, record in records.items()}
-            hung = {name: values[recorded] for name, values in hung.items()}
-        rows = series_rows(stamps, records, self._fields) | dict(hung)
+            bodies_and_joints = {path: values[recorded] for path, values in bodies_and_joints.items()}
+        rows = series_rows(stamps, records, self._fields) | dict(bodies_and_joints)
         self._waiting += self._series.row_size * len(recorded)
         self._series.record(rows)
         for row, n in enumerate(recorded):

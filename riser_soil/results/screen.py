@@ -60,7 +60,7 @@ def print_summary(summary: dict[str, Any], console: Console | None = None) -> No
                 rows = [*_figure_rows(line), *_soil_rows(stage | line)]
                 console.print(_table(f"{name}: {_stage_title(stage)}", rows))
         if stage.get("lines") and stage["steps"]:
-            console.print(_table(_stage_title(stage), [*_hung_rows(stage), *_step_rows(stage)]))
+            console.print(_table(_stage_title(stage), [*_body_and_joint_rows(stage), *_step_rows(stage)]))
         for warning in stage["warnings"]:
             console.print(f"warning: {stage['name']}: {warning}", soft_wrap=True, markup=False)
     console.print(_table(_title(summary), [*_run_rows(summary)]))
@@ -92,7 +92,7 @@ def _stage_rows(stage: dict[str, Any]) -> list[Row]:
     ]
 
 
-def _hung_rows(stage: dict[str, Any]) -> Iterator[Row]:
+def _body_and_joint_rows(stage: dict[str, Any]) -> Iterator[Row]:
     """Rows of bodies, with their places, of forces of joints and of clearances."""
     for name, body in stage.get("bodies", {}).items():
         yield f"body {name}", _place(body["position"]["final"], "m", 1.0)

@@ -11,7 +11,7 @@ import numpy as np
 
 from riser_soil.core.saved_state import Saved, Stateful, gathered, packed, restore_all, unpacked
 from riser_soil.core.snapshot import Ledger, RunFacts, StepRecord
-from riser_soil.results.hung_figures import HungExtremes
+from riser_soil.results.bodies_and_joints_figures import BodiesAndJointsExtremes
 from riser_soil.results.indicators import StepIndicators, merged
 from riser_soil.results.largest import Largest
 from riser_soil.results.line_tally import LineTally
@@ -57,8 +57,8 @@ class StageTally:
     """Statistics of one stage, energy, bodies and joints, and a tally of each line by its name, "" of the only one.
 
     time: s simulated in it (static: 0). settlings: how often clay that did not bear the riser let it settle.
-    branch_switches: how often relaxation left an unstable equilibrium. hung: figures of bodies, joints and clearances.
-    implausible: what is not plausible about them.
+    branch_switches: how often relaxation left an unstable equilibrium. bodies_and_joints: figures of bodies, joints and
+    clearances. implausible: what is not plausible about them.
     """
 
     def __init__(
@@ -72,7 +72,7 @@ class StageTally:
         self.energy, self._residual = Ledger(), Largest(beside=1, floor=0.0)
         self.indicators = StepIndicators(facts.diameter, facts.contact_period)
         self.lines = {line: LineTally(facts, line, kind, automatic) for line in lines}
-        self.hung = HungExtremes()
+        self.bodies_and_joints = BodiesAndJointsExtremes()
         self.implausible: tuple[str, ...] = ()
 
     def count(self, times: Sequence[float], steps: Sequence[StepRecord]) -> None:
@@ -106,7 +106,7 @@ class StageTally:
         whole |= {"final": None, "method": self.method, "extremes": None, "energy": self._energy}
         whole |= {"warnings": self.warnings, "indicators": self.indicators.as_dict() if self.kind == "dynamic" else {}}
         if "" not in own:
-            return whole | {"lines": own} | self.hung.nested
+            return whole | {"lines": own} | self.bodies_and_joints.nested
         only = own[""] | {"warnings": self.warnings}
         return whole | only | {"indicators": merged(only["indicators"], whole["indicators"])}
 
@@ -147,5 +147,6 @@ class StageTally:
 
     @property
     def _owners(self) -> dict[str, Stateful]:
-        owners: dict[str, Stateful] = {"residual": self._residual, "indicators": self.indicators, "hung": self.hung}
+        owners: dict[str, Stateful] = {"residual": self._residual, "indicators": self.indicators}
+        owners["hung"] = self.bodies_and_joints  # the name in checkpoints
         return owners | {f"line/{name}" if name else "line": tally for name, tally in self.lines.items()}

@@ -16,14 +16,14 @@ MOST_STEPS, MOST_NUMBERS = 64, 1 << 20  # in a buffer that is full
 class BufferedStep(NamedTuple):
     """An accepted step as it waits in the buffer: its record, what is due to be written of it, and its state.
 
-    lines: state of each line, by name; hung: values of bodies and joints; pressed: the soil under the riser, if
+    lines: state of each line, by name; bodies_and_joints: their values, by path; pressed: the soil under the riser, if
     any, where the step is recorded; soil: its fields where these are due.
     """
 
     record: StepRecord
     due: DueOutputs
     lines: dict[str, StateCopy]
-    hung: dict[str, Array]
+    bodies_and_joints: dict[str, Array]
     pressed: PressedSoil | None
     soil: SoilSnapshot | None
 

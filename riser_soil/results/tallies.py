@@ -52,7 +52,11 @@ class Tallies:
         return self.stamp()
 
     def accept(
-        self, steps: Sequence[StepRecord], due: Sequence[DueOutputs], records: Records, hung: Mapping[str, Array]
+        self,
+        steps: Sequence[StepRecord],
+        due: Sequence[DueOutputs],
+        records: Records,
+        bodies_and_joints: Mapping[str, Array],
     ) -> tuple[list[float], list[float]]:
         """Count steps; their times in the run [s], and when those are recorded whose series is due."""
         times, stamps = list[float](), list[float]()
@@ -66,7 +70,7 @@ class Tallies:
         self._now = float(at[-1])
         stage.time = self._time.stage_time
         stage.count(times, steps)
-        stage.hung.update(at, hung)
+        stage.bodies_and_joints.update(at, bodies_and_joints)
         for line, record in records.items():
             stage.lines[line].update(at, record)
         return times, stamps

@@ -289,13 +289,13 @@ def _plane(scene: Scene) -> Iterator[Problem]:
     middle = places[(len(places) - 1) // 2] if places else _ORIGIN
     plane = VerticalPlane(middle, _ALONG[across], max(view.line.length for view in views.values()))
     paths = [path_of_line(path, name) for name, view in views.items() for path in leaving_the_plane(view, plane)]
-    paths += [path for path, leaves in (*_of_hung(scene, plane), *_of_ground(scene, plane)) if leaves]
+    paths += [path for path, leaves in (*_of_bodies_and_joints(scene, plane), *_of_ground(scene, plane)) if leaves]
     allowed = f"leaves the lines' plane along {'yx'[across]}, but dimension is 2"
     for path in dict.fromkeys(paths):
         yield Problem(path, allowed, "set dimension: 3 or auto, or correct the value")
 
 
-def _of_hung(scene: Scene, plane: VerticalPlane) -> Iterator[tuple[Path, bool]]:
+def _of_bodies_and_joints(scene: Scene, plane: VerticalPlane) -> Iterator[tuple[Path, bool]]:
     """Places and loads of bodies and joints, and whether they leave a plane."""
     for name, body in scene.bodies.items():
         yield ("bodies", name, "position"), not plane.holds_point(body.position)

@@ -58,7 +58,8 @@ def _system_with(system: System, parts: Sequence[Part]) -> Callable[[Sequence[Pa
     """
     if not parts:
         return LineSystem
-    on_soil, hung = ([part for part in parts if (part.traits.groups == "E") is touching] for touching in (True, False))
+    on_soil = [part for part in parts if part.traits.groups == "E"]
+    between = [part for part in parts if part.traits.groups != "E"]
     makers: list[MakeCoupling | None] = []
     if system.model.others:
         from riser_soil.solve.soil_border import border_on_soil
@@ -66,10 +67,10 @@ def _system_with(system: System, parts: Sequence[Part]) -> Callable[[Sequence[Pa
         makers.append(border_on_soil(system, on_soil))
     elif on_soil:
         return None
-    if hung:
+    if between:
         from riser_soil.solve.joint_border import joint_border
 
-        makers.append(joint_border(hung))
+        makers.append(joint_border(between))
     couplings = [coupling for coupling in makers if coupling is not None]
     if len(couplings) < len(makers):
         return None

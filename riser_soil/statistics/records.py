@@ -91,9 +91,9 @@ def _output(runs: Sequence[Run], name: str) -> _Output:
         if output.where in ("nodes", "model")
     }
     for run in runs if "/" in name else ():
-        known |= {path: _Output(units, vector, False) for path, (units, vector) in run.hung.items()}
+        known |= {path: _Output(units, vector, False) for path, (units, vector) in run.bodies_and_joints.items()}
         if name not in known:
-            there = ", ".join(run.hung) or "no body, joint or clearance"
+            there = ", ".join(run.bodies_and_joints) or "no body, joint or clearance"
             raise ResultsError(f"--of {name}: is not in {run.place}, which has {there}")
     if name not in known:
         raise ResultsError(f"--of {name}: is none of the outputs in time; they are {', '.join(known)}")

@@ -7,7 +7,7 @@ from typing import Any
 
 from riser_soil.assembly import Assembly, build, sized
 from riser_soil.core.snapshot import Record, Records, SoilSnapshot, stacked
-from riser_soil.results.hung_figures import hung_reader, hung_values
+from riser_soil.results.bodies_and_joints_figures import bodies_and_joints_reader, bodies_and_joints_values
 from riser_soil.results.instants import InstantReader
 from riser_soil.results.peaks import RunPeaks
 from riser_soil.results.schedule import Schedule
@@ -34,7 +34,7 @@ class _PeakObserver(StatelessObserver):
     def __init__(self, assembly: Assembly, on_record: OnRecord | None) -> None:
         self._assembly, self._on_record = assembly, on_record
         self._readers = {line: InstantReader(own) for line, own in assembly.lines.items()}
-        self._hung = hung_reader(assembly)
+        self._bodies_and_joints = bodies_and_joints_reader(assembly)
         output, soil = assembly.scene.output, assembly.soil
         self._schedule = Schedule(output.interval, output.xdmf_interval)
         self.peaks = RunPeaks(None if soil is None else soil.whole.output_mesh(), assembly.name_on_soil)
@@ -58,5 +58,6 @@ class _PeakObserver(StatelessObserver):
 
     def _record(self, t: float, stepper: TimeStepper, soil: SoilSnapshot | None = None) -> Records:
         records = {line: reader.record_of([reader.copy(stepper)]) for line, reader in self._readers.items()}
-        self.peaks.record([t], records, soil, stacked([hung_values(self._hung, stepper.now)]))
+        bodies_and_joints = bodies_and_joints_values(self._bodies_and_joints, stepper.now)
+        self.peaks.record([t], records, soil, stacked([bodies_and_joints]))
         return records

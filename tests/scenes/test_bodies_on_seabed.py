@@ -220,9 +220,9 @@ def test_two_ranks_find_the_same(tmp_path: Path) -> None:
 
 
 def contacts_of(scene: dict[str, Any]) -> dict[str, BodyContact]:
-    hung = build(scene_from_mapping(scene), MPI.COMM_SELF).hung
-    assert hung is not None
-    return hung.contacts
+    bodies_and_joints = build(scene_from_mapping(scene), MPI.COMM_SELF).bodies_and_joints
+    assert bodies_and_joints is not None
+    return bodies_and_joints.contacts
 
 
 def test_nothing_is_built_for_bodies_that_can_not_get_to_the_bed() -> None:

@@ -109,12 +109,12 @@ def test_what_lies_on_no_soil_records_none(hung: Run) -> None:
 def test_soil_is_as_it_was_until_lines_and_bodies_hang_as_they_will() -> None:
     """They are laid on a cushion, and the buoy let go there, before clay, whose path counts, is there."""
     assembly = build(scene_from_mapping(hung_over_clay(model="sections")), MPI.COMM_SELF)
-    assert assembly.hung is not None
-    place = assembly.hung.bodies["buoy"].x.copy()
+    assert assembly.bodies_and_joints is not None
+    place = assembly.bodies_and_joints.bodies["buoy"].x.copy()
     before, counter = lay(assembly, Timer.new())
     assert counter is not None
     assert counter.steps > 1
-    assert np.abs(assembly.hung.bodies["buoy"].x - place).max() > 0.1
+    assert np.abs(assembly.bodies_and_joints.bodies["buoy"].x - place).max() > 0.1
     assert assembly.soil is not None
     assert before.u.size == assembly.size
     assert assembly.soil.whole.energy(State.at_rest(0.0, assembly.size)).strain == 0.0

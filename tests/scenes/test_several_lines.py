@@ -26,7 +26,7 @@ from riser_soil.checks.overload import overload
 from riser_soil.checks.plausibility import physical_warnings
 from riser_soil.errors import ResultsError, SceneError
 from riser_soil.fatigue.stress_history import stress_history
-from riser_soil.report.extremes import hung_table, key_results_table
+from riser_soil.report.extremes import bodies_and_joints_table, key_results_table
 from riser_soil.report.report import write_report
 from riser_soil.report.report_file import of_folders
 from riser_soil.results.peaks import RunPeaks
@@ -408,7 +408,7 @@ def test_files_of_a_run(tmp_path: Path) -> None:
     assert all(re.search(rf"<h3[^>]*>.*Line {name}</h3>", page) for name in NAMES)
     assert "Sensitivity" not in page, "lines of one run are no parameter"
     assert page.count(">body buoy</td>") == page.count(">clearance east_north</td>") == 2
-    rest, moved = (row for row in hung_table(run.summary).rows if row[1] == "clearance east_north")
+    rest, moved = (row for row in bodies_and_joints_table(run.summary).rows if row[1] == "clearance east_north")
     first, *distances = run["clearance/east_north/distance"]
     assert float(rest[4]) == pytest.approx(first, rel=1e-4)
     assert [float(moved[n]) for n in (4, 5, 7)] == pytest.approx(

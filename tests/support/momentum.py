@@ -20,7 +20,7 @@ from riser_soil.solve.time_stepper import TimeStepper
 def momentum(assembly: Assembly, stepper: TimeStepper) -> tuple[Array, Array]:
     """Linear (3,) and angular (3,) momentum about the origin, the sections' own spin included; global axes."""
     momenta = [_of_line(own.line, stepper) for own in assembly.lines.values()]
-    for body in {} if assembly.hung is None else assembly.hung.bodies.values():
+    for body in {} if assembly.bodies_and_joints is None else assembly.bodies_and_joints.bodies.values():
         (part,) = (p for p in stepper.system.model.parts if isinstance(p, BodyInertia) and p.line is body)
         momenta.append(of_body(body, part.M, body.nodal(stepper.now.v)[0]))
     linear, angular = (np.sum(each, axis=0) for each in zip(*momenta, strict=True))

@@ -285,13 +285,13 @@ def test_joints_store_what_they_stretch() -> None:
     stage = last_stage("a bundle", "compiled")
     assert stage.newton.lines is not None
     stage.walk(1)
-    hung = stage.assembly.hung
-    assert hung is not None
-    assert hung.joints is not None
+    bodies_and_joints = stage.assembly.bodies_and_joints
+    assert bodies_and_joints is not None
+    assert bodies_and_joints.joints is not None
     step = stage.stepper.next_step(stage.control)
     solution = stage.newton.solve(step)
     energy, _ = stage.newton.accepted.energy_exchanged(step.before, solution)
     parts: Energy = sum((part.energy(solution.state) for part in stage.system.model.parts), Energy())
-    assert hung.joints.energy(solution.state).strain > 0.0
+    assert bodies_and_joints.joints.energy(solution.state).strain > 0.0
     assert energy.strain == pytest.approx(parts.strain, rel=1e-12)
     assert energy.potential == pytest.approx(parts.potential, rel=1e-12)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from riser_soil.results.hung import between_segments, clearance
+from riser_soil.results.bodies_and_joints import between_segments, clearance
 
 O, X, Y, Z = np.zeros(3), np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0])
 

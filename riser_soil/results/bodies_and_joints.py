@@ -46,15 +46,15 @@ _OF_PAIR = {
 }
 
 
-class HungReader:
+class BodiesAndJointsReader:
     """Looks at bodies, joints and clearances of a scene with several lines. Joints are in the order of the scene."""
 
     def __init__(self, assembly: Assembly) -> None:
-        self._assembly, hung = assembly, assembly.hung
-        self._bodies: dict[str, MovingBody] = {} if hung is None else hung.bodies
-        self._joints = None if hung is None else hung.joints
-        self._contacts = {} if hung is None else hung.contacts
-        self._frictions = {} if hung is None else hung.frictions
+        self._assembly, present = assembly, assembly.bodies_and_joints
+        self._bodies: dict[str, MovingBody] = {} if present is None else present.bodies
+        self._joints = None if present is None else present.joints
+        self._contacts = {} if present is None else present.contacts
+        self._frictions = {} if present is None else present.frictions
         self._pairs = [_Pair(assembly, spec) for spec in assembly.scene.output.clearance]
 
     @property
@@ -96,7 +96,10 @@ class HungReader:
         return values
 
     def warnings(self, figures: Mapping[str, Any]) -> list[str]:
-        """Warnings of rigid joints that gape and of bodies below ground. figures: of a stage, see `HungExtremes`."""
+        """Warnings of rigid joints that gape and of bodies below ground.
+
+        figures: of a stage, see `BodiesAndJointsExtremes`.
+        """
         joints = () if self._joints is None else self._joints.joints
         joints_of_scene = self._assembly.scene.joints
         warnings = []

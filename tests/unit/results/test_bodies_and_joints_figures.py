@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from riser_soil.results.hung_figures import HungExtremes
+from riser_soil.results.bodies_and_joints_figures import BodiesAndJointsExtremes
 
 TIMES = np.array([0.0, 0.5, 1.0, 1.5])
 ROWS = {
@@ -13,8 +13,8 @@ ROWS = {
 }
 
 
-def followed(*batches: slice) -> HungExtremes:
-    extremes = HungExtremes()
+def followed(*batches: slice) -> BodiesAndJointsExtremes:
+    extremes = BodiesAndJointsExtremes()
     for each in batches:
         extremes.update(TIMES[each], {name: values[each] for name, values in ROWS.items()})
     return extremes
@@ -30,7 +30,7 @@ def test_extremes_and_the_end_are_nested_by_path_and_nan_does_not_count() -> Non
 
 
 def test_they_hang_neither_on_batches_nor_on_a_restart() -> None:
-    begun, again = followed(slice(0, 1), slice(1, 3)), HungExtremes()
+    begun, again = followed(slice(0, 1), slice(1, 3)), BodiesAndJointsExtremes()
     again.restore(begun.state())
     for each in (begun, again):
         each.update(TIMES[3:], {name: values[3:] for name, values in ROWS.items()})

@@ -12,10 +12,10 @@ from riser_soil.results.largest import Range
 
 if TYPE_CHECKING:
     from riser_soil.assembly import Assembly
-    from riser_soil.results.hung import HungReader
+    from riser_soil.results.bodies_and_joints import BodiesAndJointsReader
 
 
-class HungExtremes:
+class BodiesAndJointsExtremes:
     """Extremes of bodies, joints and clearances in a stage so far, and their values at its last instant."""
 
     def __init__(self) -> None:
@@ -54,15 +54,15 @@ class HungExtremes:
         restore_all(self._ranges, within(saved, "ranges"))
 
 
-def hung_reader(assembly: Assembly) -> HungReader | None:
+def bodies_and_joints_reader(assembly: Assembly) -> BodiesAndJointsReader | None:
     """Reader of bodies, joints and clearances; None in a scene of one riser."""
     if not assembly.scene.lines:
         return None
-    from riser_soil.results.hung import HungReader
+    from riser_soil.results.bodies_and_joints import BodiesAndJointsReader
 
-    return HungReader(assembly)
+    return BodiesAndJointsReader(assembly)
 
 
-def hung_values(reader: HungReader | None, state: State) -> dict[str, Array]:
+def bodies_and_joints_values(reader: BodiesAndJointsReader | None, state: State) -> dict[str, Array]:
     """Values of bodies, joints and clearances at an accepted state by path; none without a reader."""
     return {} if reader is None else reader.values(state)
