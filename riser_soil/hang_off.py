@@ -15,7 +15,15 @@ from typing import Any
 import numpy as np
 
 from riser_soil.assembly import Assembly, build, sized
-from riser_soil.assembly.hang_off import HungEnd, by_cable, first_value, hung_ends, in_words, settled, with_values
+from riser_soil.assembly.hang_off import (
+    HangOffEnd,
+    by_cable,
+    first_value,
+    hang_off_ends,
+    in_words,
+    settled,
+    with_values,
+)
 from riser_soil.assembly.packages import communicator_of
 from riser_soil.core.arrays import Array, as_list
 from riser_soil.core.communicator import Communicator
@@ -35,26 +43,26 @@ FIRST_STEP = 0.1  # largest relative length of the first step
 class SolvedEnd:
     """Solved end. value: its coordinate or length [m]. reached: angle [deg] or tension [N] of the riser there."""
 
-    hung: HungEnd
+    end: HangOffEnd
     value: float
     reached: float
 
     @property
     def in_words(self) -> str:
         """The request and what was reached, in words."""
-        return f"{in_words(self.hung, self.value)} gives {self.reached:.7g} {self.hung.asked.unit}"
+        return f"{in_words(self.end, self.value)} gives {self.reached:.7g} {self.end.asked.unit}"
 
     @property
     def summary(self) -> dict[str, Any]:
         """This end in block `hang_off` of summary.json."""
-        asked = self.hung.asked
+        asked = self.end.asked
         quantity = {"angle_deg": asked.angle} if asked.angle is not None else {"tension": asked.tension}
-        known = {"end": self.hung.name, "asked": quantity, "reached": self.reached}
+        known = {"end": self.end.name, "asked": quantity, "reached": self.reached}
         return known | {"by": asked.by, "value": self.value}
 
 
 @dataclass(frozen=True)
-class HungScene:
+class SolvedHangOffs:
     """The scene with solved hang-offs. solves: number of static solves."""
 
     scene: Scene
@@ -69,16 +77,16 @@ class HungScene:
     @property
     def summary(self) -> dict[str, Any]:
         """Block `hang_off` of summary.json, of several lines by name."""
-        summaries = {each.hung.line: each.summary | {"static_solves": self.solves} for each in self.ends}
+        summaries = {each.end.line: each.summary | {"static_solves": self.solves} for each in self.ends}
         return summaries if self.scene.lines else summaries[""]
 
 
-def hung(scene: Scene) -> HungScene | None:
+def with_hang_offs_solved(scene: Scene) -> SolvedHangOffs | None:
     """The scene with its hang-offs solved, None where it has none; collective.
 
     Raises SceneError where there is no solution, SolveError where none was found.
     """
-    ends = hung_ends(scene)
+    ends = hang_off_ends(scene)
     if not ends:
         return None
     return _HangOffSearch(ends, communicator_of(scene)).solve()
@@ -90,7 +98,7 @@ class _HangOffSearch:
     The search begins with the values of cables, or of cables whose aims are shifted by the residual, if that is nearer.
     """
 
-    def __init__(self, ends: Sequence[HungEnd], comm: Communicator) -> None:
+    def __init__(self, ends: Sequence[HangOffEnd], comm: Communicator) -> None:
         self._ends, self._comm = ends, comm
         self._asked = np.array([each.asked.asked for each in ends])
         angles = np.array([each.asked.angle is not None for each in ends])
@@ -98,7 +106,7 @@ class _HangOffSearch:
         self._low, self._high = np.transpose([each.bounds for each in ends])
         self._evaluated: list[tuple[Array, Array]] = []  # values and their residuals
 
-    def solve(self) -> HungScene:
+    def solve(self) -> SolvedHangOffs:
         """The scene with the values of the root, or SolveError."""
         from scipy.optimize import root
 
@@ -113,7 +121,7 @@ class _HangOffSearch:
             raise self._failure()
         ends = zip(self._ends, as_list(values), as_list(self._asked + residual * self._tolerance), strict=True)
         scene = settled(self._ends, as_list(values))
-        return HungScene(scene, tuple(SolvedEnd(*each) for each in ends), len(self._evaluated))
+        return SolvedHangOffs(scene, tuple(SolvedEnd(*each) for each in ends), len(self._evaluated))
 
     def _shifted(self, values: Array, residual: Array) -> list[Array]:
         """The values, and those of cables with shifted aims, where there are such cables."""
@@ -170,7 +178,7 @@ def _beyond_tolerance(residual: Array) -> Array:
     return residual.copy() if np.any(np.abs(residual) > 1.0) else np.zeros_like(residual)
 
 
-def _reached(ends: Sequence[HungEnd], scene: Scene, comm: Communicator) -> Array:
+def _reached(ends: Sequence[HangOffEnd], scene: Scene, comm: Communicator) -> Array:
     """Angles [deg] or tensions [N] of lines (ends,) at the end of the first stage, without the vessel's offset;
     collective.
     """
@@ -183,16 +191,16 @@ def _reached(ends: Sequence[HungEnd], scene: Scene, comm: Communicator) -> Array
 class _LastStep(StatelessObserver):
     """Observer of angles [deg] or tensions [N] at the last step of a stage, on rank 0."""
 
-    def __init__(self, assembly: Assembly, ends: Sequence[HungEnd]) -> None:
+    def __init__(self, assembly: Assembly, ends: Sequence[HangOffEnd]) -> None:
         self._assembly, self._ends, self.values = assembly, ends, list[float]()
 
     def record(self, stepper: TimeStepper, step: AcceptedStep, last: bool) -> None:
         if last and self._assembly.comm.rank == 0:
-            self.values = [self._value(hung, stepper) for hung in self._ends]
+            self.values = [self._value(end, stepper) for end in self._ends]
 
-    def _value(self, hung: HungEnd, stepper: TimeStepper) -> float:
-        riser, at_end = riser_record(self._assembly.lines[hung.line], stepper), hung.name == "end"
-        if hung.asked.angle is None:
+    def _value(self, end: HangOffEnd, stepper: TimeStepper) -> float:
+        riser, at_end = riser_record(self._assembly.lines[end.line], stepper), end.name == "end"
+        if end.asked.angle is None:
             return float(riser.effective_tension[-1 if at_end else 0])
         return from_vertical(riser.end_tangent if at_end else -riser.start_tangent)
 

@@ -89,7 +89,7 @@ def _refuse_restart(restart: bool, folder: Path) -> None:
 
 def in_numbers(scene: Scene) -> tuple[Scene, dict[str, Any]]:
     """The scene with its hang-offs solved and its vessel at its offset; blocks of the summary on both; collective."""
-    scene, more = _hung(scene)
+    scene, more = _with_hang_offs_solved(scene)
     if scene.vessel is None:
         return scene, more
     from riser_soil.assembly.packages import communicator_of
@@ -100,15 +100,15 @@ def in_numbers(scene: Scene) -> tuple[Scene, dict[str, Any]]:
     return at_offset(scene), more | {"vessel": displaced.summary}
 
 
-def _hung(scene: Scene) -> tuple[Scene, dict[str, Any]]:
+def _with_hang_offs_solved(scene: Scene) -> tuple[Scene, dict[str, Any]]:
     if not any(line.hangs_off for line in risers(scene).values()):
         return scene, {}
     from riser_soil.assembly.packages import communicator_of
-    from riser_soil.hang_off import hung
+    from riser_soil.hang_off import with_hang_offs_solved
     from riser_soil.interruption import handling_signals
 
     with handling_signals():
-        solved = hung(scene)
+        solved = with_hang_offs_solved(scene)
     assert solved is not None
     if communicator_of(scene).rank == 0:
         print(solved.in_words)

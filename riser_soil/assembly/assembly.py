@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from riser_soil.assembly.hang_off import hung_ends
+from riser_soil.assembly.hang_off import hang_off_ends
 from riser_soil.assembly.line_assembly import LineAssembly, line_assembly
 from riser_soil.assembly.scales import Scales, of_several
 from riser_soil.assembly.sea import SeaAssembly, sea_of
@@ -286,7 +286,7 @@ def build(scene: Scene, comm: Communicator) -> Assembly:
     """Build the parts of a scene; collective. Raises SceneError or MeshError."""
     if scene.accuracy is not None:
         raise SceneError("accuracy: elements and steps are to be chosen first, by riser_soil.accuracy.target_run")
-    for asking in hung_ends(scene):
+    for asking in hang_off_ends(scene):
         raise SceneError(f"{asking.path}: is to be solved first, by riser_soil.hang_off")
     if scene.vessel is not None:
         raise SceneError("vessel.offset: is to be put into the stages first, by riser_soil.scene.variants.at_offset")

@@ -28,7 +28,7 @@ CLOSE = 1e-12  # of what is solved for: how closely the cable's is found
 
 
 @dataclass(frozen=True)
-class HungEnd:
+class HangOffEnd:
     """The end of a line that hangs off: the line's name, "" of the only one, the end's, start or end, and what it asks
     for.
 
@@ -101,45 +101,45 @@ class HungEnd:
         return f"{self.line + ': ' if self.line else ''}{what} of {self.asked.asked:g} {self.asked.unit}"
 
 
-def in_words(hung: HungEnd, value: float) -> str:
+def in_words(end: HangOffEnd, value: float) -> str:
     """A hang-off's request, and the value [m] with its place, in words."""
-    if hung.asked.by == "length":
-        return f"{hung.request}: a length of {value:.6g} m of segments.{hung.segment}"
-    name = hung.name if hung.asked.by == "layback" else hung.other
-    riser = _riser(with_values([hung], [value]), hung.line)
+    if end.asked.by == "length":
+        return f"{end.request}: a length of {value:.6g} m of segments.{end.segment}"
+    name = end.name if end.asked.by == "layback" else end.other
+    riser = _riser(with_values([end], [value]), end.line)
     place = ", ".join(f"{x:.6g}" for x in _position(riser, name))
-    return f"{hung.request}: a layback of {value:.6g} m, the {name} at [{place}],"
+    return f"{end.request}: a layback of {value:.6g} m, the {name} at [{place}],"
 
 
-def hung_ends(scene: Scene) -> list[HungEnd]:
+def hang_off_ends(scene: Scene) -> list[HangOffEnd]:
     """The ends that hang off, at most one of each line."""
     ends = [(line, name, getattr(riser, name)) for line, riser in risers(scene).items() for name in ENDS]
     return [
-        HungEnd(scene, line, name, end.hang_off)
+        HangOffEnd(scene, line, name, end.hang_off)
         for line, name, end in ends
         if isinstance(end, Support) and end.hang_off is not None
     ]
 
 
-def with_values(ends: Sequence[HungEnd], values: Sequence[float]) -> Scene:
+def with_values(ends: Sequence[HangOffEnd], values: Sequence[float]) -> Scene:
     """The scene of the ends with values of what is solved for [m], and no hang-off asked any more."""
     scene = ends[0].scene
-    for hung, value in zip(ends, values, strict=True):
-        scene = _with_value(scene, hung, value)
+    for end, value in zip(ends, values, strict=True):
+        scene = _with_value(scene, end, value)
     return scene
 
 
-def _with_value(before: Scene, hung: HungEnd, value: float) -> Scene:
-    riser = risers(before)[hung.line]
-    plain = getattr(riser, hung.name).model_copy(update={"hang_off": None})
-    scene = with_risers(before, {**risers(before), hung.line: riser.model_copy(update={hung.name: plain})})
-    if hung.asked.by == "length":
-        return with_segment_as_long(scene, hung.line, hung.segment, value)
-    name, sign = (hung.name, 1.0) if hung.asked.by == "layback" else (hung.other, -1.0)
-    ahead = hung.span * [1.0, 1.0, 0.0] * (sign * (value / hung.layback - 1.0))
+def _with_value(before: Scene, end: HangOffEnd, value: float) -> Scene:
+    riser = risers(before)[end.line]
+    plain = getattr(riser, end.name).model_copy(update={"hang_off": None})
+    scene = with_risers(before, {**risers(before), end.line: riser.model_copy(update={end.name: plain})})
+    if end.asked.by == "length":
+        return with_segment_as_long(scene, end.line, end.segment, value)
+    name, sign = (end.name, 1.0) if end.asked.by == "layback" else (end.other, -1.0)
+    ahead = end.span * [1.0, 1.0, 0.0] * (sign * (value / end.layback - 1.0))
     x, y, z = (float(each) for each in _position(riser, name) + ahead)
-    moved = with_end_at(scene, hung.line, name, (x, y, z))
-    return _as_high_over_the_ground(moved, scene, hung.line, hung.other)
+    moved = with_end_at(scene, end.line, name, (x, y, z))
+    return _as_high_over_the_ground(moved, scene, end.line, end.other)
 
 
 def _as_high_over_the_ground(scene: Scene, before: Scene, line: str, name: str) -> Scene:
@@ -152,64 +152,64 @@ def _as_high_over_the_ground(scene: Scene, before: Scene, line: str, name: str) 
     return with_end_at(scene, line, name, (x, y, z + rise)) if rise else scene
 
 
-def settled(ends: Sequence[HungEnd], values: Sequence[float]) -> Scene:
+def settled(ends: Sequence[HangOffEnd], values: Sequence[float]) -> Scene:
     """The scene with the values that were solved for [m], and no hang-off asked any more; SceneError where it has
     conflicts then.
     """
     scene = with_values(ends, values)
     for problem in all_conflicts(scene):
         wrong = message(problem, scene.model_dump(by_alias=True))
-        words = " and ".join(in_words(hung, value) for hung, value in zip(ends, values, strict=True))
+        words = " and ".join(in_words(end, value) for end, value in zip(ends, values, strict=True))
         raise SceneError(f"{ends[0].path}: {words} but then {wrong}")
     return scene
 
 
-def first_value(hung: HungEnd) -> float:
+def first_value(end: HangOffEnd) -> float:
     """The value [m] to begin with: a cable's; the given one where none has it and a joint lets the other end go."""
     try:
-        return by_cable(hung, hung.asked.asked)
+        return by_cable(end, end.asked.asked)
     except SceneError:
-        if not getattr(hung.riser, hung.other).jointed:
+        if not getattr(end.riser, end.other).jointed:
             raise
-        return hung.segments[hung.segment].length if hung.asked.by == "length" else hung.layback
+        return end.segments[end.segment].length if end.asked.by == "length" else end.layback
 
 
-def by_cable(hung: HungEnd, asked: float) -> float:
+def by_cable(end: HangOffEnd, asked: float) -> float:
     """The value [m] with which a cable without bending stiffness has an angle [deg] or tension [N].
 
     Of two, the tauter one's. Raises SceneError where none within the limits has it.
     """
     from scipy.optimize import brentq
 
-    values, looks = _looked_at(hung), list[float]()
+    values, looks = _looked_at(end), list[float]()
     for n, value in enumerate(values):
-        looks.append(_cable_value(hung, value))
+        looks.append(_cable_value(end, value))
         if n and (looks[-1] - asked) * (looks[-2] - asked) <= 0.0:
             between, close = values[n - 1 : n + 1], CLOSE * max(values)
-            return float(brentq(lambda x: _cable_value(hung, x) - asked, *between, xtol=close, rtol=CLOSE))
-    what = "length" if hung.asked.by == "length" else "layback"
+            return float(brentq(lambda x: _cable_value(end, x) - asked, *between, xtol=close, rtol=CLOSE))
+    what = "length" if end.asked.by == "length" else "layback"
     raise SceneError(
-        f"{hung.path}: {hung.request} is out of reach: as a cable, with a {what} from {min(values):.4g} to "
-        f"{max(values):.4g} m, it has {min(looks):.4g} to {max(looks):.4g} {hung.asked.unit}; ask for a value between, "
+        f"{end.path}: {end.request} is out of reach: as a cable, with a {what} from {min(values):.4g} to "
+        f"{max(values):.4g} m, it has {min(looks):.4g} to {max(looks):.4g} {end.asked.unit}; ask for a value between, "
         "or change the segments or the height"
     )
 
 
-def _looked_at(hung: HungEnd) -> Array:
+def _looked_at(end: HangOffEnd) -> Array:
     """Values (LOOKS,) [m] from the tautest to the slackest, closest where the riser is taut."""
-    low, high = hung.limits
-    taut, slack = (low, high) if hung.asked.by == "length" else (high, low)
+    low, high = end.limits
+    taut, slack = (low, high) if end.asked.by == "length" else (high, low)
     return np.asarray(taut + (slack - taut) * np.linspace(0.0, 1.0, LOOKS) ** 2)
 
 
-def _cable_value(hung: HungEnd, value: float) -> float:
+def _cable_value(end: HangOffEnd, value: float) -> float:
     """The cable's angle from the vertical [deg] or tension [N] at the end that hangs off."""
-    scene = by_line(with_values([hung], [value]))[hung.line]
-    start, end = (_position(scene.line, name) for name in ENDS)
-    with placing(hung.line):
-        cable = catenary_between(scene, elements_of(scene), attachments_of(scene), start, end)
-    tension = float(cable.tension[-1 if hung.name == "end" else 0])
-    return tension if hung.asked.angle is None else math.degrees(math.asin(min(1.0, cable.H / tension)))
+    scene = by_line(with_values([end], [value]))[end.line]
+    start, last = (_position(scene.line, name) for name in ENDS)
+    with placing(end.line):
+        cable = catenary_between(scene, elements_of(scene), attachments_of(scene), start, last)
+    tension = float(cable.tension[-1 if end.name == "end" else 0])
+    return tension if end.asked.angle is None else math.degrees(math.asin(min(1.0, cable.H / tension)))
 
 
 def _riser(scene: Scene, line: str) -> Riser:

@@ -126,12 +126,12 @@ class LevelBed:
     def _touchdowns(self, cable: ShapeInPlane, H: float) -> Iterator[Touchdown]:
         """Touchdown points of a cable; none where an end is pulled up from its place on the ground."""
         for e in np.flatnonzero(cable.hangs[1:] != cable.hangs[:-1]):
-            hung, weight = e + int(cable.hangs[e + 1]), float(self.elements.weight[e])
+            hanging, weight = e + int(cable.hangs[e + 1]), float(self.elements.weight[e])
             if weight <= 0.0:  # it floats up from there
                 continue
-            at = float(self.line.arc[hung] - H * np.tan(cable.angle[hung]) / weight)
+            at = float(self.line.arc[hanging] - H * np.tan(cable.angle[hanging]) / weight)
             if 0.0 < at < self.line.arc[-1]:
-                yield Touchdown(at, 1.0 if hung > e else -1.0, self._bend(e, weight, H))
+                yield Touchdown(at, 1.0 if hanging > e else -1.0, self._bend(e, weight, H))
 
     def _bend(self, e: int, weight: float, H: float) -> TouchdownBend:
         EI = max(float(self.elements.EI_y[e]), H * (LEAST_BEND * float(self.elements.length[e])) ** 2)

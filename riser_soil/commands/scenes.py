@@ -51,21 +51,21 @@ def guessed(scene: "Scene") -> "Scene":
     """
     from riser_soil.scene.variants import at_offset, displacement
 
-    hung = _hung_as_cable(scene)
-    if hung.vessel is not None and rank() == 0:
-        print(displacement(hung).in_words)
-    return at_offset(hung)
+    placed = _with_hang_offs_by_cable(scene)
+    if placed.vessel is not None and rank() == 0:
+        print(displacement(placed).in_words)
+    return at_offset(placed)
 
 
-def _hung_as_cable(scene: "Scene") -> "Scene":
+def _with_hang_offs_by_cable(scene: "Scene") -> "Scene":
     from riser_soil.scene.lines import risers
 
     if not any(line.hangs_off for line in risers(scene).values()):
         return scene
-    from riser_soil.assembly.hang_off import first_value, hung_ends, in_words, settled
+    from riser_soil.assembly.hang_off import first_value, hang_off_ends, in_words, settled
 
-    ends = hung_ends(scene)
-    values = [first_value(hung) for hung in ends]
+    ends = hang_off_ends(scene)
+    values = [first_value(end) for end in ends]
     placed = settled(ends, values)
     for each in zip(ends, values, strict=True) if rank() == 0 else ():
         print(f"{in_words(*each)} by the cable without bending stiffness; a run solves it on the riser itself")

@@ -51,7 +51,7 @@ def layout_of(kind: Kind, pipe: CrossSection, depth: float) -> LineLayout:
     if depth < SHALLOW * pipe.outer:
         problem = f"too shallow for a line of {pipe.outer:.3g} m"
         raise SceneError(f"--depth {depth:g}: {problem}: take {SHALLOW * pipe.outer:.3g} m or more")
-    return _hung(kind, pipe, depth) if kind.hangs else _upright(pipe, depth)
+    return _hanging(kind, pipe, depth) if kind.hangs else _upright(pipe, depth)
 
 
 def _upright(pipe: CrossSection, depth: float) -> LineLayout:
@@ -60,7 +60,7 @@ def _upright(pipe: CrossSection, depth: float) -> LineLayout:
     return LineLayout({PIPE: pipe}, (cut,), (0.0, 0.0, 0.0), (0.0, 0.0, top), tension)
 
 
-def _hung(kind: Kind, pipe: CrossSection, depth: float) -> LineLayout:
+def _hanging(kind: Kind, pipe: CrossSection, depth: float) -> LineLayout:
     low, high = 0.5 * pipe.outer, depth - min(BELOW * depth, ABOVE)
     pipes, line = {PIPE: pipe}, HangingLine(PIPE, pipe.weight, pipe.EA)
     hanging = free_hanging(line, high - low, kind.angle)

@@ -194,7 +194,7 @@ class GivenLine(NamedTuple):
         return {name: math.fsum(amount_of(each.get("length")) for each in of) for name, of in used.items() if of}
 
     @property
-    def hung(self) -> float:
+    def hanging_weight(self) -> float:
         """Weight in water of a piece as long as the line is high [N]."""
         weights = [self.pipes[name].weight(self.water, self.contents) * length for name, length in self.lengths.items()]
         length = math.fsum(self.lengths.values())
@@ -215,15 +215,15 @@ def _of_line(line: GivenLine) -> Iterator[Doubt]:
             yield from _of_pull(line, (*line.path, *path), first_number(line.given, path))
 
 
-def _of_strain(pipe: GivenPipe, hung: float) -> Iterator[Doubt]:
+def _of_strain(pipe: GivenPipe, weight: float) -> Iterator[Doubt]:
     path, EA, what = (*pipe.path, "EA"), pipe.number("EA"), "by the weight of what hangs a strain"
-    yield from doubt(path, EA, "N", FORCES, lambda EA: hung / EA, STRAIN, what)
+    yield from doubt(path, EA, "N", FORCES, lambda EA: weight / EA, STRAIN, what)
 
 
 def _of_pull(line: GivenLine, path: Path, tension: float) -> Iterator[Doubt]:
-    if (hung := line.hung) > 0.0:
+    if (weight := line.hanging_weight) > 0.0:
         what = "over the weight of a piece as long as the line is high a share"
-        yield from doubt(path, tension, "N", FORCES, _over(hung), PULL, what)
+        yield from doubt(path, tension, "N", FORCES, _over(weight), PULL, what)
 
 
 def _of_given_weight(line: GivenLine, pipe: GivenPipe) -> Iterator[Doubt]:

@@ -14,10 +14,10 @@ from scipy.optimize import brentq
 from typer.testing import CliRunner
 
 from riser_soil.accuracy.chosen_run import run_as_asked
-from riser_soil.assembly.hang_off import HungEnd, by_cable, hung_ends, settled, with_values
+from riser_soil.assembly.hang_off import HangOffEnd, by_cable, hang_off_ends, settled, with_values
 from riser_soil.commands.app import app
 from riser_soil.errors import Interruption, SceneError
-from riser_soil.hang_off import SolvedEnd, from_vertical, hung
+from riser_soil.hang_off import SolvedEnd, from_vertical, with_hang_offs_solved
 from riser_soil.results import Run
 from riser_soil.results.observer import Observer
 from riser_soil.scene.cross_checks import conflicts
@@ -44,7 +44,7 @@ def hanging(pipe: Mapping = CHAIN, end: str = "end", elements: int = 30, **asked
 
 
 def solved(scene: Mapping) -> tuple[Scene, SolvedEnd]:
-    result = hung(scene_from_mapping(scene))
+    result = with_hang_offs_solved(scene_from_mapping(scene))
     assert result is not None
     (only,) = result.ends
     return result.scene, only
@@ -84,7 +84,7 @@ def test_a_stiff_riser_has_what_was_asked_for_in_its_run(asked: Mapping, promise
     scene, result = solved(hanging(STIFF, **asked))
     ((end,),) = [[history.end] for history in stage_histories(scene)]
     reached = from_vertical(end.end_tangent) if "angle" in asked else float(end.effective_tension[-1])
-    wanted = result.hung.asked.asked
+    wanted = result.end.asked.asked
     assert reached == pytest.approx(wanted, abs=promised)
     assert abs(catenary(result.value)["tension" in asked] - wanted) > 5.0 * promised
     if "by" in asked:
@@ -98,7 +98,7 @@ def test_several_lines_side_by_side() -> None:
     ends = {end: prescribed(x, 5.0, z) for end, x, z in (("start", 0.0, 0.0), ("end", 30.0, RISE))}
     ends["end"]["hang_off"] = {"tension": 1.1e4}
     scene["lines"] = {"first": first, "second": first | ends}
-    result = hung(scene_from_mapping(scene))
+    result = with_hang_offs_solved(scene_from_mapping(scene))
     assert result is not None
     angle, tension = (catenary(each.value)[n] for n, each in enumerate(result.ends))
     assert angle == pytest.approx(20.0, abs=0.03), "by the elements"
@@ -132,7 +132,7 @@ def _between(line: str) -> list[Mapping]:
 @pytest.mark.verify
 def test_lines_that_hang_on_each_other(tmp_path: Path) -> None:
     """Both pull with the same H, and together bear all weight, of which each angle's tangent gives a share."""
-    result = hung(scene_from_mapping(on_a_weight(west=45.0, east=40.0)))
+    result = with_hang_offs_solved(scene_from_mapping(on_a_weight(west=45.0, east=40.0)))
     assert result is not None
     assert [each.reached for each in result.ends] == pytest.approx([45.0, 40.0], abs=0.002)
     assert result.solves < 12
@@ -153,7 +153,7 @@ def test_a_joint_goes_farther_than_its_line_is_long_at_first(tmp_path: Path) -> 
     scene["line_types"]["pipe"] = IN_SPACE | {"EA": 1.0e7}
     for line in scene["lines"].values():
         line["segments"][0]["length"] = 120.0
-    result = hung(scene_from_mapping(scene))
+    result = with_hang_offs_solved(scene_from_mapping(scene))
     assert result is not None
     lengths = [each.value for each in result.ends]
     assert lengths[0] == pytest.approx(lengths[1], rel=1e-4)
@@ -166,7 +166,7 @@ def test_a_shifted_aim_that_no_cable_reaches_ends_no_search(monkeypatch: pytest.
     """Aims beyond what was asked for are out of reach: one value is tried, and slopes are found by differences."""
     original = by_cable
 
-    def at_most(wanted: HungEnd, asked: float) -> float:
+    def at_most(wanted: HangOffEnd, asked: float) -> float:
         if asked != 15.0:
             raise SceneError("out of reach")
         return original(wanted, asked)
@@ -214,7 +214,7 @@ def test_no_anchor_moves_that_a_joint_holds() -> None:
 
 
 def test_a_cable_is_where_it_begins() -> None:
-    (wanted,) = hung_ends(scene_from_mapping(hanging(angle=20.0)))
+    (wanted,) = hang_off_ends(scene_from_mapping(hanging(angle=20.0)))
     assert catenary(by_cable(wanted, 20.0))[0] == pytest.approx(20.0, abs=1e-4)
 
 
@@ -262,7 +262,7 @@ def test_commands_tell_what_was_found(tmp_path: Path) -> None:
 
 
 def guessed(scene: Mapping, value: float, folder: Path = Path()) -> Scene:
-    return with_values(hung_ends(scene_from_mapping(scene, folder)), [value])
+    return with_values(hang_off_ends(scene_from_mapping(scene, folder)), [value])
 
 
 @pytest.mark.parametrize("end", ["end", "start"])
@@ -321,6 +321,6 @@ def test_the_anchor_stays_on_its_ground(end: str, ground: float, after: float, b
 def test_a_scene_that_cannot_be_with_what_was_found_is_reported(tmp_path: Path) -> None:
     (tmp_path / "seabed.csv").write_text("x [m], y [m], z [m]\n-5, -5, 0\n-5, 5, 0\n30, -5, 0\n30, 5, 0\n")
     scene = hanging(angle=20.0) | {"seabed": {"kind": "rigid", "contact_at": "axis", "grid": "seabed.csv"}}
-    ends = hung_ends(scene_from_mapping(scene | {"dimension": 2}, tmp_path))
+    ends = hang_off_ends(scene_from_mapping(scene | {"dimension": 2}, tmp_path))
     with pytest.raises(SceneError, match=telling("riser.end.hang_off:", "seabed.grid:", "beyond the grid")):
         settled(ends, [35.0])
