@@ -13,7 +13,7 @@ from typer.main import get_group
 
 from riser_soil.__main__ import app
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[2]
 # VTK does not stand processes that have imported dolfinx.
 ALONE = [ROOT / "riser_soil" / "plots" / f"{name}.py" for name in ("touchdown", "film")]
 
