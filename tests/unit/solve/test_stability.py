@@ -1,7 +1,11 @@
-"""Statics return stable equilibria only; where Newton finds none, relaxation does, or the failure is told."""
+"""Statics return stable equilibria only; where Newton finds none, relaxation does, or the failure is told.
+
+Negative pivots of a riser over soil that it does not touch are those of the whole, and the soil's are counted once.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -12,10 +16,13 @@ from riser_soil.core.part import Model, State
 from riser_soil.core.system import System, Timer
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.solve import direct_solver, stability
 from riser_soil.solve.buckling_mode import stabilising_drag
 from riser_soil.solve.stability import PivotCounter, unstable_modes
 from riser_soil.solve.time_scheme import Static
 from riser_soil.whole_run import run
+from tests.support.above_soil import hanging
+from tests.support.driven_stage import FirstStep, built
 from tests.support.toy_chain import Chain, Floor, Springs
 
 PIPE = {"EA": 1e7, "EI": 1e3, "submerged_weight": 100.0}
@@ -153,3 +160,61 @@ def test_round_off_neither_makes_nor_hides_an_unstable_mode(stiffness: float, ce
 def test_the_least_stabilising_drag() -> None:
     assert stabilising_drag(1e4, lambda drag: drag > 3.0) == pytest.approx(1e4 / 2**11)
     assert stabilising_drag(1e-3, lambda drag: drag > 3.0) == pytest.approx(1e-3 * 2**12)
+
+
+@pytest.fixture
+def system() -> Iterator[System]:
+    scene = hanging()
+    scene["stages"] = scene["stages"][:1]
+    step = FirstStep(built(scene))
+    step.matrix(np.zeros(step.free))
+    yield step.system
+    step.system.destroy()
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """What has been factorised: "whole" or "soil"."""
+    calls, usual, behind = list[str](), stability.negative_pivots, direct_solver.negative_pivots_behind
+
+    def of_whole(system: System) -> int:
+        calls.append("whole")
+        return usual(system)
+
+    def of_soil(system: System, rows: int) -> int:
+        calls.append("soil")
+        return behind(system, rows)
+
+    monkeypatch.setattr(stability, "negative_pivots", of_whole)
+    monkeypatch.setattr(direct_solver, "negative_pivots_behind", of_soil)
+    return calls
+
+
+def lower(system: System, first: int, count: int) -> None:
+    """Make some rows of the matrix' diagonal negative, far beyond what is beside it."""
+    more = system.numbering.zeros()
+    more[first : first + count] = -1e12
+    system.matrix.add_to_diagonal(more)
+
+
+def test_a_riser_over_soil_has_pivots_of_its_own(system: System, asked: list[str]) -> None:
+    pivots = PivotCounter(system)
+    lower(system, 3, 2)
+    assert pivots.count() == direct_solver.negative_pivots(system) == 2
+    lower(system, 9, 1)
+    assert pivots.count() == direct_solver.negative_pivots(system) == 3
+    assert asked == ["soil"]
+
+
+def test_soil_that_has_changed_is_counted_again(system: System, asked: list[str]) -> None:
+    pivots = PivotCounter(system)
+    assert pivots.count() == 0
+    lower(system, system.line_rows + 5, 4)
+    assert pivots.count() == direct_solver.negative_pivots(system) == 4
+    assert asked == ["soil", "soil"]
+
+
+def test_what_touches_is_counted_together(system: System, asked: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(System, "couples", property(lambda _: True))
+    assert PivotCounter(system).count() == 0
+    assert asked == ["whole"]

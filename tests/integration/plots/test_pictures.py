@@ -10,7 +10,6 @@ from PIL import Image
 
 from riser_soil.errors import ResultsError
 from riser_soil.plots import picture
-from riser_soil.plots.scales import colour_scale, magnification
 from riser_soil.results.record import Recorder
 from tests.support.recorded_run import FACTS, SCENE, block, record
 from tests.support.said import telling
@@ -82,17 +81,3 @@ def test_a_field_left_out_of_the_run_is_named(tmp_path: Path) -> None:
     record(tmp_path, mesh=block(4, 3, 2), fields=("bending_moment", "von_mises_stress"))
     with pytest.raises(ResultsError, match=telling("needs displacement", "output.fields")):
         picture(tmp_path, tmp_path / "no.png")
-
-
-@pytest.mark.parametrize(
-    ("largest", "scale"), [(1531.0, (1600.0, 5)), (3.0, (3.0, 4)), (0.0095, (0.01, 6)), (0.0, (1.0, 2))]
-)
-def test_colour_scales_end_at_round_numbers(largest: float, scale: tuple[float, int]) -> None:
-    assert colour_scale(np.array([0.0, largest])) == pytest.approx(scale)
-
-
-@pytest.mark.parametrize(
-    ("largest", "factor"), [(0.04, 5.0), (0.00137, 100.0), (0.25, 1.0), (3.0, 1.0), (0.0, 1.0)]
-)
-def test_soil_is_magnified_by_a_round_factor(largest: float, factor: float) -> None:
-    assert magnification(largest, depth=2.5) == factor
