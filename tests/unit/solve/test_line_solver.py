@@ -141,6 +141,14 @@ def test_a_step_that_fails_says_why_as_snes_does() -> None:
     assert messages[0] == messages[1]
 
 
+@pytest.mark.parametrize("newton", ["compiled", "snes"])
+def test_increments_of_accepted_states_stay_zero(newton: str) -> None:
+    """All accepted states share them."""
+    stage = walked("surge in a plane", newton, 3)
+    assert stage.stepper.before.u is stage.system.no_increments
+    assert not stage.system.no_increments.any()
+
+
 @pytest.mark.parametrize(
     ("norms", "apart", "kept"),
     [
