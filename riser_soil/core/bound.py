@@ -119,6 +119,7 @@ def call_until(given: Calls, failure: IntArray) -> None:
 
 
 NEVER = Packed(np.zeros(1, dtype=np.int64))
+"""A failure that none of the kernels writes."""
 
 
 def in_turn(*bound: Bound, until: Packed = NEVER) -> Bound:

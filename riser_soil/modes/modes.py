@@ -327,8 +327,8 @@ def _with_mass(assembly: Assembly) -> list[Part]:
     if (bodies_and_joints := assembly.bodies_and_joints) is not None and bodies_and_joints.bodies:
         from riser_soil.bodies.inertia import BodyInertia
 
-        masses = {name: given.mass_matrix() for name, given in bodies_and_joints.given.items()}
-        parts += [BodyInertia(body, masses[name]) for name, body in bodies_and_joints.bodies.items()]
+        given = bodies_and_joints.given
+        parts += [BodyInertia(body, given[name].mass_matrix()) for name, body in bodies_and_joints.bodies.items()]
     return parts
 
 

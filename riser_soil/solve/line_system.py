@@ -101,8 +101,8 @@ MakeCoupling = Callable[["DenseBorder", Sequence[PackedLine]], Coupling]
 class LineSystem:
     """Residual, tangent and solution of lines and bodies with their couplings, by kernels, for Newton's loop.
 
-    border: of the bands, None where nothing couples them. convergence: of the step. evaluate, write_tangent,
-    renew_contact, correct: pieces of the loop, which are looked at alone, too.
+    border: of the bands, None where nothing couples them. convergence: of the step. evaluate, write_tangent, correct:
+    pieces of the loop, which are looked at alone, too. keep: keeps the history of the parts at the solution.
     """
 
     def __init__(
@@ -161,10 +161,10 @@ class LineSystem:
         self._look_for_tangles = in_turn(*(kernel for line in lines for kernel in line.look_for_tangles))
         self.evaluate, self._probe = in_turn(*evaluate), in_turn(*probe)
         self._update = in_turn(*bulk, *joined, *contact, *factors, *improve, until=failure)
-        self._update_by_kept_tangent, self.renew_contact = in_turn(*touch, *improve, until=failure), in_turn(*touch)
+        self._update_by_kept_tangent = in_turn(*touch, *improve, until=failure)
         self.write_tangent = in_turn(*bulk, *joined, *contact, *fill, *sizes)
         self.correct = in_turn(*factors, *improve)
-        self._keep = in_turn(*history) if (history := [kernel for line in lines for kernel in line.keep()]) else None
+        self.keep = in_turn(*(kernel for line in lines for kernel in line.keep()))
 
     def begin(self, state: State, past: Array, weights: Weights, limits: StopLimits) -> None:
         """Begin a step from a state of all local dofs.
@@ -207,11 +207,6 @@ class LineSystem:
         else:
             self._update()
         return ITERATING if self._failure[0] == kernels.NONE else NOT_SOLVED
-
-    def keep(self) -> None:
-        """Keep the history of the parts at the solution."""
-        if self._keep is not None:
-            self._keep()
 
     def account(self, before: State) -> None:
         """Compute the energy at the end of the step solved last, and the work in it."""

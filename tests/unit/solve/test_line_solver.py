@@ -18,7 +18,7 @@ from riser_soil.core import banded
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SolveError
 from riser_soil.seabed.grounds import Plane
-from riser_soil.solve.convergence import Convergence, StopLimits
+from riser_soil.solve.convergence import ITERATING, Convergence, StopLimits
 from riser_soil.solve.packed_line import PackedLine
 from riser_soil.solve.step import NotConvergedError
 from tests.support.dense_chain import tangent
@@ -183,7 +183,10 @@ def test_contact_alone_is_found_anew_beside_a_kept_tangent() -> None:
     for u in (compiled.line.step.u, at.line.nodal(moved.u)):
         u[:, 1] += change
     compiled.riser.evaluate()
-    compiled.riser.renew_contact()
+    convergence = compiled.riser.convergence
+    convergence.limits, convergence.norms[:] = convergence.limits._replace(reuse=0.1), [1.0, 0.01]
+    assert convergence.keeps_tangent
+    assert compiled.riser.improve() == ITERATING
     computed, own, stale, rest = (
         matrix[places][:, places]
         for matrix in (
