@@ -47,6 +47,8 @@ from riser_soil.core.kinds import BY_ADDRESS, Kind, classes, kind_of, mark
 NAME = PACKAGE.name
 ROOM = 1 << 26  # bytes that all kernels need, and some more
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "arcp"}}
+NO_ENTRY = OPTIONS | {"no_cfunc_wrapper": True}
+"""For what no C function calls: numba else gives each function an entry for C, a tenth of all compilation."""
 ANNOUNCEMENT = "compiling kernels (once, about a minute)"
 
 
@@ -62,7 +64,7 @@ class Kernel:
         self._made: dict[tuple[Any, ...], Any] = {}  # by numba's types of the arguments
         self._latest: dict[tuple[type, ...], Any] = {}
         update_wrapper(self, function)
-        overload(self, jit_options=OPTIONS | {"forceinline": not apart}, strict=False)(lambda *_: function)
+        overload(self, jit_options=NO_ENTRY | {"forceinline": not apart}, strict=False)(lambda *_: function)
 
     def __call__(self, *arguments: Any) -> Any:
         """What was compiled for such types is called, and looked for anew where numba says with a TypeError that arrays
@@ -86,7 +88,7 @@ class Kernel:
             if not BY_ADDRESS.isdisjoint(classes(kind := kind_of(arguments))):
                 raise TypeError(f"{_name(self.py_func)}: bound kernels are among its arguments; it is called by Bound")
             with keeping(place_of(self.py_func, kind)):
-                self._made[signature] = numba.njit([signature], cache=True, **OPTIONS)(self.py_func)
+                self._made[signature] = numba.njit([signature], cache=True, **NO_ENTRY)(self.py_func)
         return self._made[signature]
 
 
