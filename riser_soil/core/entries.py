@@ -69,7 +69,7 @@ class Entry:
 
     @cached_property
     def compiled(self) -> Any:
-        """As a C function."""
+        """The C function, which has its address."""
         signature = types.void(types.CPointer(types.voidptr), types.CPointer(ENTRY))
         with keeping(self.place):
             return numba.cfunc(signature, cache=True, **OPTIONS)(self._function)

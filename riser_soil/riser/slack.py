@@ -17,7 +17,6 @@ MOST_SOFT = 0.1  # of the strain
 FOLD = 500.0  # of an element's weight: an element under this alone sags to angles of 0.5 rad
 
 
-
 def law_of(bends: BoolArray, weight: Array, length: Array, EA: Array) -> Law:
     """Law of elements with and without bending stiffness; weight N/m, length m, EA N (ne,)."""
     if bends.all():
@@ -39,15 +38,15 @@ def heap(chain: BarChain, h: float, surface: float = np.inf) -> tuple[Array, Cab
         mirrored = None if min(up) < 0.0 else _heap(replace(chain, W=-chain.W, z0=up[0], z1=up[1]), h)
         if mirrored is None:
             return None
-        x, hung = mirrored
-        return x, replace(hung, chain=chain, z=chain.z0 + surface - hung.z, V=-hung.V)
+        x, balance = mirrored
+        return x, replace(balance, chain=chain, z=chain.z0 + surface - balance.z, V=-balance.V)
     return _heap(chain, h) if chain.hover is not None and (chain.W >= 0.0).all() else None
 
 
 def _heap(chain: BarChain, h: float) -> tuple[Array, CableBalance] | None:
     """The balance of a line that hangs straight down to a heap at z = 0; None where it would not reach it."""
-    first = _hung(chain.l0, chain.W, chain.EA, chain.z0)
-    last = _hung(chain.l0[::-1], chain.W[::-1], chain.EA[::-1], chain.z1)
+    first = _suspended(chain.l0, chain.W, chain.EA, chain.z0)
+    last = _suspended(chain.l0[::-1], chain.W[::-1], chain.EA[::-1], chain.z1)
     lying = chain.l0.size - first.V.size - last.V.size
     if lying < 1:
         return None
@@ -66,7 +65,7 @@ def _heap(chain: BarChain, h: float) -> tuple[Array, CableBalance] | None:
 
 
 @dataclass(frozen=True, eq=False)
-class HungBars:
+class SuspendedBars:
     """Bars that hang straight down from an end to the seabed: heights of their joints z (n + 1,) m, from the end on,
     and forces V (n,) N in them.
     """
@@ -75,7 +74,7 @@ class HungBars:
     V: Array
 
 
-def _hung(l0: Array, W: Array, EA: Array, height: float) -> HungBars:
+def _suspended(l0: Array, W: Array, EA: Array, height: float) -> SuspendedBars:
     """The bars of a chain, counted from an end at a height [m], that hang all over their length."""
     down = np.cumsum(l0)
     n = int(np.searchsorted(down, height, side="right"))
@@ -83,4 +82,4 @@ def _hung(l0: Array, W: Array, EA: Array, height: float) -> HungBars:
     rest = height - (down[n - 1] if n else 0.0)
     V = below[:n] - (0.5 * W[n] - W[n] * rest / l0[n] if 0 < n < l0.size else 0.0)
     z = height - np.append(0.0, np.cumsum(l0[:n] * (1.0 + V / EA[:n])))
-    return HungBars(np.maximum(z, 0.0), V)
+    return SuspendedBars(np.maximum(z, 0.0), V)

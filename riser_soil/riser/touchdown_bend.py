@@ -74,8 +74,8 @@ class TouchdownBend:
         """Height [m] and slope of the pipe beyond those of a cable on ground that is higher by the rise, at arc lengths
         from the touchdown (n,) [m].
         """
-        (height, slope), hung = self._pipe(s), np.maximum(s - self.lift_off, 0.0)
-        return height - self.rise - 0.5 * self.curvature * hung**2, slope - self.curvature * hung
+        (height, slope), suspended = self._pipe(s), np.maximum(s - self.lift_off, 0.0)
+        return height - self.rise - 0.5 * self.curvature * suspended**2, slope - self.curvature * suspended
 
     def _pipe(self, s: Array) -> tuple[Array, Array]:
         """Height over the surface, and slope."""
