@@ -18,7 +18,7 @@ from typing import Any
 
 from numba.extending import overload
 
-from riser_soil.core.compiled import OPTIONS, njit
+from riser_soil.core.compiled import NO_ENTRY, njit
 from riser_soil.core.kernel_cache import KERNELS_FOR
 
 Kernel = Callable[..., Any]
@@ -36,7 +36,7 @@ def by_type(stub: Any, apart: bool = True) -> Any:
     def chosen(part: Any, *rest: Any) -> Any:
         return kernels[type(part)](part, *rest)
 
-    @overload(chosen, jit_options=OPTIONS | {"forceinline": not apart}, strict=False)
+    @overload(chosen, jit_options=NO_ENTRY | {"forceinline": not apart}, strict=False)
     def choose(part: Any, *rest: Any) -> Kernel | None:
         kernel = kernels.get(getattr(part, "instance_class", type(None)))  # the NamedTuple, as numba sees it
         return None if kernel is None else kernel.py_func
@@ -44,7 +44,7 @@ def by_type(stub: Any, apart: bool = True) -> Any:
     def of(data: type) -> Callable[[Kernel], Kernel]:
         def keep(kernel: Kernel) -> Kernel:
             kernels[data] = njit(kernel, apart=apart)
-            KERNELS_FOR.setdefault(data, set()).add(kernel.__module__)
+            KERNELS_FOR.setdefault(data, set()).add((stub.__module__, kernel.__module__))
             return kernel
 
         return keep

@@ -48,7 +48,7 @@ NAME = PACKAGE.name
 ROOM = 1 << 26  # bytes that all kernels need, and some more
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "arcp"}}
 NO_ENTRY = OPTIONS | {"no_cfunc_wrapper": True}
-"""For what no C function calls: numba else gives each function an entry for C, a tenth of all compilation."""
+"""For what nothing calls by address: numba else gives each function an entry for C, a tenth of all compilation."""
 ANNOUNCEMENT = "compiling kernels (once, about a minute)"
 
 

@@ -124,15 +124,17 @@ def caching_in(folder: str) -> Iterator[None]:
 
 def dependencies(modules: Iterable[str], kind: Kind) -> str:
     """A word for the sources that a function for arguments of a kind depends on: those of modules, of the NamedTuples
-    in the kind, and of kernels that are chosen by them.
+    in the kind, and of kernels that are chosen by them where one of these sources calls them.
     """
     named = set(classes(kind))
-    chosen = (each for one in named for each in KERNELS_FOR.get(one, ()))
-    return SOURCES.word({*modules, *(one.__module__ for one in named), *chosen})
+    needed, choices = {*modules, *(one.__module__ for one in named)}, [KERNELS_FOR.get(one, set()) for one in named]
+    while chosen := {kernel for callee, kernel in set().union(*choices) if SOURCES.need(needed, callee)} - needed:
+        needed |= chosen
+    return SOURCES.word(needed)
 
 
-KERNELS_FOR: dict[type, set[str]] = {}
-"""Modules with kernels that are chosen by a type, see `by_type`."""
+KERNELS_FOR: dict[type, set[tuple[str, str]]] = {}
+"""Kernels that are chosen by a type, see `by_type`: the modules of the function that is called, and of the kernel."""
 
 
 def version_folder(root: Path, word: str) -> Path:

@@ -37,6 +37,10 @@ class PackageSources:
             todo = {path for file in todo for path in self._imports(file)} - files
         return files
 
+    def need(self, modules: Iterable[str], other: str) -> bool:
+        """Whether some modules are or import another one."""
+        return self._file(other) in self.needed(modules)
+
     def _file(self, module: str) -> str:
         """The file of a module; "" where there is none."""
         first, _, rest = module.partition(".")

@@ -22,6 +22,7 @@ from typing import Protocol
 import numpy as np
 
 from riser_soil.core.arrays import Array
+from riser_soil.core.communicator import any_of
 from riser_soil.core.compiled import njit
 from riser_soil.core.part import Forces, State, Weights
 from riser_soil.core.roles import MomentumCorrecting
@@ -49,8 +50,11 @@ class CommittedStep:
 
     @property
     def contact(self) -> Array | None:
-        """Accelerations that contact causes [m/s2]; None where no forces may jump."""
-        return None if self.system.smooth else self._accelerations(-self.forces.end)
+        """Accelerations that contact causes [m/s2]; None where nothing touches."""
+        system, touches = self.system, False
+        if not system.smooth:
+            touches = any_of(system.comm, bool(self.forces.end.any()))
+        return self._accelerations(-self.forces.end) if touches else None
 
     def with_momentum(self, state: State) -> State:
         """The state with the rates that have the momentum of the step's end."""

@@ -30,7 +30,9 @@ DOCUMENTED = {"address", "ctypes", "py_func", "signature"}  # the last of the wr
 OTHERS = {  # words that objects of others have, too
     "load", "args", "name", "register", "globals", "flush", "_replace", "enable", "disable",
 }  # fmt: skip
-OPTIONS = {"nopython", "boundscheck", "error_model", "fastmath", "forceinline", "inline"}
+OPTIONS = {  # the last: by numba's page on types, where it tells of functions as arguments
+    "nopython", "boundscheck", "error_model", "fastmath", "forceinline", "inline", "no_cfunc_wrapper",
+}  # fmt: skip
 IN_TREE = getattr(caching, "InTreeCacheLocator", None) or caching._InTreeCacheLocator  # by the release
 INSIDE: tuple[Any, ...] = (
     CPUDispatcher, dispatcher._DispatcherBase, caching.FunctionCache, caching.CompileResultCacheImpl,
@@ -124,8 +126,8 @@ def test_one_file_writes_for_llvm() -> None:
         ("import numba\nkind._code", {"_code"}),
         ("import numba\nclass A(B):\n    _impl_class, x = C, 1", {"_impl_class"}),
         ("import numba\nclass A(B):\n    def load_overload(self): 1", {"load_overload"}),
-        ("import numba\ncall(**{'no_cfunc_wrapper': True})", {"no_cfunc_wrapper"}),
-        ("import numba\ncall(no_cfunc_wrapper=True)", {"no_cfunc_wrapper"}),
+        ("import numba\ncall(**{'no_cpython_wrapper': True})", {"no_cpython_wrapper"}),
+        ("import numba\ncall(no_cpython_wrapper=True)", {"no_cpython_wrapper"}),
         ("import os\nf.targetctx", set()),
     ],
 )  # fmt: skip

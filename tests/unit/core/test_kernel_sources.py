@@ -58,6 +58,18 @@ from riser_soil.soil.law import Soft, stress
 def _soft(law, x):
     return law.k * x
 """
+FLOW = """
+from riser_soil.core.by_type import by_type
+from riser_soil.soil.law import Soft
+
+@by_type
+def flow(law, x):
+    "Plastic flow, for which no other module asks."
+
+@flow.of(Soft)
+def _soft(law, x):
+    return 0.0
+"""
 CALL = """
 from numba.core import event
 from riser_soil.sea.buoyancy import buoyancy
@@ -80,7 +92,7 @@ print(drag(3.0), buoyancy(3.0), pressed(Soft(5.0), 3.0), *sorted(Compiled.names)
 FILES = {
     **dict.fromkeys(("__init__.py", "core/__init__.py", "sea/__init__.py", "soil/__init__.py"), ""),
     **{"sea/speed.py": SPEED, "sea/drag.py": DRAG, "sea/buoyancy.py": BUOYANCY},
-    **{"soil/law.py": LAW, "soil/soft.py": SOFT},
+    **{"soil/law.py": LAW, "soil/soft.py": SOFT, "soil/flow.py": FLOW},
 }
 
 
@@ -97,11 +109,11 @@ def package(tmp_path: Path) -> Path:
     return folder
 
 
-def called(package: Path) -> tuple[list[float], set[str]]:
-    """Results of the kernels, and what was compiled for them."""
+def called(package: Path, first: str = "") -> tuple[list[float], set[str]]:
+    """Results of the kernels, and what was compiled for them. first: a statement before all others."""
     path = os.pathsep.join([str(package.parent), *sys.path])
     given = environment() | {"NUMBA_CACHE_DIR": str(package.parent / "cache"), "PYTHONPATH": path}
-    call = [sys.executable, "-c", CALL]
+    call = [sys.executable, "-c", f"{first}\n{CALL}"]
     done = subprocess.run(
         call, env=given, cwd=package.parent, capture_output=True, text=True, timeout=HANGS, check=False
     )
@@ -129,6 +141,12 @@ def test_an_edit_compiles_what_depends_on_it_and_nothing_else(package: Path) -> 
     assert values == [144.0, 15.0, 16.0]
     assert "pressed" in names
     assert not {"drag", "speed", "buoyancy"} & names
+
+
+def test_kernels_that_are_chosen_by_a_type_count_where_they_are_called(package: Path) -> None:
+    """What has been imported by then compiles nothing anew, though it has kernels for the same type."""
+    called(package)
+    assert called(package, first="import riser_soil.soil.flow") == ([36.0, 9.0, 15.0], set())
 
 
 @pytest.mark.parametrize(
