@@ -127,8 +127,9 @@ def dependencies(modules: Iterable[str], kind: Kind) -> str:
     in the kind, and of kernels that are chosen by them where one of these sources calls them.
     """
     named = set(classes(kind))
-    needed, choices = {*modules, *(one.__module__ for one in named)}, [KERNELS_FOR.get(one, set()) for one in named]
-    while chosen := {kernel for callee, kernel in set().union(*choices) if SOURCES.need(needed, callee)} - needed:
+    choices = {pair for one in named for pair in KERNELS_FOR.get(one, ())}
+    needed = {*modules, *(one.__module__ for one in named)}
+    while chosen := SOURCES.chosen(needed, choices) - needed:
         needed |= chosen
     return SOURCES.word(needed)
 

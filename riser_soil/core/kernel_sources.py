@@ -37,9 +37,10 @@ class PackageSources:
             todo = {path for file in todo for path in self._imports(file)} - files
         return files
 
-    def need(self, modules: Iterable[str], other: str) -> bool:
-        """Whether some modules are or import another one."""
-        return self._file(other) in self.needed(modules)
+    def chosen(self, modules: Iterable[str], choices: Iterable[tuple[str, str]]) -> set[str]:
+        """The second of each pair of modules the first of which is one of some modules, or what they import."""
+        files = self.needed(modules)
+        return {kernel for callee, kernel in choices if self._file(callee) in files}
 
     def _file(self, module: str) -> str:
         """The file of a module; "" where there is none."""
