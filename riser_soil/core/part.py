@@ -24,9 +24,9 @@ from riser_soil.core.saved_state import Saved
 GROUPS = "IFE"  # of forces; see the module's text
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class State:
-    """Trial state of all local dofs.
+    """Trial state of all local dofs; another state is another object, as some are known by what was found at them.
 
     t: seconds since the stage began; in a static stage the load factor, 0 to 1.
     u: increment since the last accepted state: displacement [m], body-axes rotation vector [rad].

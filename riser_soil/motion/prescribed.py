@@ -93,17 +93,18 @@ class SwingingEnd:
     def __call__(self, t: float) -> Kinematics:
         """Position [m], velocity [m/s] and acceleration [m/s2] at t [s]."""
         phi, rate, acceleration = self.swing(t)
-        middle, arm, across = self._circle
-        turned: Array = arm * math.cos(phi) + across * math.sin(phi)
-        ahead = across * math.cos(phi) - arm * math.sin(phi)
-        return middle + turned, rate * ahead, acceleration * ahead - rate * rate * turned
+        middle, arms = self._circle
+        turned, ahead = (math.cos(phi), math.sin(phi)), (-math.sin(phi), math.cos(phi))
+        change = [acceleration * along - rate * rate * out for along, out in zip(ahead, turned, strict=True)]
+        x, v, a = np.array([turned, [rate * along for along in ahead], change]) @ arms
+        return middle + x, v, a
 
     @cached_property
-    def _circle(self) -> tuple[Array, Array, Array]:
-        """A circle's middle (3,) [m], the arm to the origin, and the arm a quarter turn on."""
+    def _circle(self) -> tuple[Array, Array]:
+        """A circle's middle (3,) [m]; the arm to the origin, and the arm a quarter turn on (2, 3) [m]."""
         arm = self.origin - self.hub
         along = float(arm @ self.axis) * self.axis
-        return self.hub + along, arm - along, np.asarray(np.cross(self.axis, arm), dtype=float)
+        return self.hub + along, np.stack([arm - along, np.cross(self.axis, arm)])
 
 
 @dataclass(frozen=True, eq=False)

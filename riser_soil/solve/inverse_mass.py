@@ -49,29 +49,33 @@ class LineMass:
         self.K, self._free, self._has_projectors = workspace.K, ~prescribed, False
         self._step = StepData(*(np.zeros(shape) for _ in range(6)))
         self._dofs = Dofs(np.zeros(shape, dtype=bool), np.ones(shape), *(np.zeros(shape) for _ in range(3)))
-        moving, whole = np.zeros((*shape, shape[1])), np.zeros(nodes, dtype=bool)
-        self._mass = MassData(1.0 / levers.reshape(shape), moving, whole)
+        moving, whole, inverse = np.zeros((*shape, shape[1])), np.zeros(nodes, dtype=bool), 1.0 / levers.reshape(shape)
+        self._mass = MassData(inverse, moving, whole)
         written, dofs, mass = map(Packed, (workspace, self._dofs, self._mass))
         self._weigh = Bound(weigh, written, mass)
-        self._solve = in_turn(
+        self._solve_weighed = in_turn(
             Bound(project, written, dofs, mass),
             Bound(kernels.fill, written, dofs),
             Bound(kernels.factorise, written, Packed(np.zeros(1, dtype=np.int64))),
             Bound(kernels.improve, written, Packed(self._step), dofs),
         )
+        self._solve = in_turn(self._weigh, self._solve_weighed)
+        self._u, self._residual, self._inverse = (each.ravel() for each in (self._step.u, self._dofs.residual, inverse))
 
     def accelerations(self, force: Array) -> Array:
         """a with M a = force (size,); K is lost.
 
         What has no mass (as the twist of a line without inertia about its axis) and prescribed dofs get none.
         """
-        self._weigh()
-        if not self._has_projectors:
+        self._u[:] = 0.0
+        np.negative(force, out=self._residual)
+        if self._has_projectors:
+            self._solve()
+        else:
+            self._weigh()
             self.restore(projectors(self.K, self._free))
-        self._step.u[...] = 0.0
-        np.negative(force, out=self._dofs.residual.ravel())
-        self._solve()
-        return self._step.u.ravel() * self._mass.inverse.ravel()
+            self._solve_weighed()
+        return self._u * self._inverse
 
     @property
     def moving(self) -> Array | None:
