@@ -104,12 +104,12 @@ def _started_together() -> str:
 
 def any_of(comm: Communicator, here: bool) -> bool:
     """Whether something is so on any rank; collective."""
-    return any(comm.allgather(bool(here)))
+    return here if comm.size == 1 else any(comm.allgather(here))
 
 
 def all_of(comm: Communicator, here: bool) -> bool:
     """Whether something is so on all ranks; collective."""
-    return all(comm.allgather(bool(here)))
+    return here if comm.size == 1 else all(comm.allgather(here))
 
 
 @contextmanager

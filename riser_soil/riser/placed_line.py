@@ -89,7 +89,7 @@ class PlacedLine:
     def _moves_by(self, increments: Array) -> bool:
         """Whether increments of all local dofs move the line."""
         if increments is not self._increments:
-            self._increments, self._moves = increments, bool(increments[self._line.part].any())
+            self._increments, self._moves = increments, np.count_nonzero(increments[self._line.part]) > 0
         return self._moves
 
     def forget(self) -> None:

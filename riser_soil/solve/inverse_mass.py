@@ -216,7 +216,7 @@ class InverseMass:
 
     def accelerations(self, t: float, force: Array) -> Array:
         """a with M a = force, in the accepted configuration at time t; local arrays, zero where there is no mass."""
-        out, comm = np.zeros_like(force), self._system.comm
+        out, comm = np.zeros(force.size), self._system.comm
         if self._others is not None:
             self._others.write_accelerations(force, out)
         nothing = self._system.no_increments

@@ -148,7 +148,7 @@ class LineSolver(StepResults):
         """When Newton's iterations stop. A smooth motion takes an iteration at least, which reduces its load."""
         gradual = self.system.gradual and all(each.gradual for each in self._couplings)
         smooth = self.system.smooth
-        done_at_start = smooth or at_equilibrium or bool(step.guess[self.system.free_dofs].any())
+        done_at_start = smooth or at_equilibrium or np.count_nonzero(step.guess[self.system.free_dofs]) > 0
         return limits_of(settings, smooth, gradual, done_at_start, step.scheme.step_over_trial)
 
     def _tangle(self, trial: StepTrial) -> str:

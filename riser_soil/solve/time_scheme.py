@@ -51,10 +51,9 @@ class CommittedStep:
     @property
     def contact(self) -> Array | None:
         """Accelerations that contact causes [m/s2]; None where nothing touches."""
-        system, touches = self.system, False
-        if not system.smooth:
-            touches = any_of(system.comm, bool(self.forces.end.any()))
-        return self._accelerations(-self.forces.end) if touches else None
+        system, end = self.system, self.forces.end
+        touches = not system.smooth and any_of(system.comm, np.count_nonzero(end) > 0)
+        return self._accelerations(-end) if touches else None
 
     def with_momentum(self, state: State) -> State:
         """The state with the rates that have the momentum of the step's end."""

@@ -299,7 +299,7 @@ class TimeStepper:
         if self.now.v is step.solution.state.v:
             return step.energy
         assert self._mass is not None
-        return replace(step.energy, kinetic=self._mass.kinetic_energy(self.now))
+        return Energy(self._mass.kinetic_energy(self.now), step.energy.strain, step.energy.potential)
 
     @property
     def _renews_history(self) -> bool:
