@@ -273,9 +273,10 @@ def _contact_tangent(part: SeabedData, at: Configuration, maps: Maps, weights: W
 
 @add_energy.of(SeabedData)
 def _contact_energy(part: SeabedData, at: Configuration, energy: Array) -> None:
-    share = part.touching.share.reshape(part.stored.size)
+    share, stored = part.touching.share.reshape(part.stored.size), 0.0
     for p in range(part.stored.size):
-        energy[2] += share[p] * part.stored[p]
+        stored += share[p] * part.stored[p]
+    energy[2] += stored
 
 
 @add_work.of(SeabedData)
