@@ -13,6 +13,7 @@ from riser_soil.core.system import System, Timer
 from riser_soil.errors import SolveError
 from riser_soil.results import Run
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.solve.inverse_mass import InverseMass
 from riser_soil.solve.newton import Newton
 from riser_soil.solve.newton_settings import NewtonSettings
 from riser_soil.solve.step_control import StepControl
@@ -92,6 +93,29 @@ def test_impact_never_gains_energy(scheme: Scheme, stiffness: float, dt: float) 
     assert min(s.dissipated for s in steps) > -1e-9 * start
     assert max(s.energy.total for s in steps) <= start * (1.0 + 1e-6)
     assert sum(s.dissipated for s in steps) > 0.0
+
+
+@pytest.mark.parametrize(("height", "touches"), [(9.0, False), (0.1, True)])
+def test_accelerations_of_contact_are_solved_for_where_something_touches(
+    height: float, touches: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A chain that swings over a floor, so high that it never gets there, moves as one without a floor."""
+    asked, accelerations = list[float](), InverseMass.accelerations
+
+    def counted(mass: InverseMass, t: float, force: np.ndarray) -> np.ndarray:
+        asked.append(t)
+        return accelerations(mass, t, force)
+
+    monkeypatch.setattr(InverseMass, "accelerations", counted)
+    ends = []
+    for floor in (True, False):
+        chain = Chain(height + np.arange(4.0))
+        parts: list[Part] = [Springs(chain, 1.0, 20.0), Inertia(chain, 1.0)]
+        parts += [Floor(chain, 1e4)] if floor else []
+        walk_through(chain, parts, AVERAGE, np.array([-1.0, 0.3, 0.1, 0.8]), 3.0, 0.03)
+        ends.append(chain.z)
+    assert (max(asked) > 0.0) == touches
+    assert (ends[0] == pytest.approx(ends[1], rel=1e-12)) != touches
 
 
 class Unsolvable(Springs):
