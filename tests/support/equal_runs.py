@@ -36,7 +36,7 @@ def _frames(one: Path, other: Path) -> Iterator[str]:
             yield numbers
         if (one / numbers).exists():
             with h5py.File(one / numbers) as a, h5py.File(other / numbers) as b:
-                arrays = ({name: item[()] for name, item in _datasets(file)} for file in (a, b))
+                arrays = ({name: item[()] for name, item in datasets(file)} for file in (a, b))
                 yield from (f"{numbers}: {name}" for name in _differing(*arrays))
             if not _same_text(one / text, other / text):
                 yield text
@@ -64,12 +64,13 @@ def _numbers(path: Path) -> Iterator[Any]:
         yield np.frombuffer(content[name], count=count, offset=int(place))
 
 
-def _datasets(group: h5py.Group, at: str = "") -> Iterator[tuple[str, h5py.Dataset]]:
+def datasets(group: h5py.Group, at: str = "") -> Iterator[tuple[str, h5py.Dataset]]:
+    """All datasets of a file, or of a group, with their names in it."""
     for name, item in group.items():
         if isinstance(item, h5py.Dataset):
             yield f"{at}{name}", item
         else:
-            yield from _datasets(item, f"{at}{name}/")
+            yield from datasets(item, f"{at}{name}/")
 
 
 def _summaries(one: Path, other: Path) -> Iterator[str]:

@@ -19,6 +19,7 @@ from riser_soil.results.observer import Observer
 from riser_soil.results.run_clock import RunClock
 from riser_soil.scene.scene import Scene
 from riser_soil.stages import lay, resume_stage, run_stage
+from tests.support.equal_runs import datasets
 
 TIMES = ("clock/", "observer/recorder/summary/seconds")  # what it took differs from run to run
 
@@ -83,7 +84,7 @@ def _same(one: AnyArray, other: AnyArray) -> bool:
 def differing_rows(one: Path, other: Path) -> list[str]:
     """Variables of results.nc whose last rows, as many as the shorter file has, are not the same to the last bit."""
     with h5py.File(one / "results.nc") as a, h5py.File(other / "results.nc") as b:
-        return [name for name in a if not _same(*_last_rows(a[name], b[name]))]
+        return [name for name, rows in datasets(a) if not _same(*_last_rows(rows, b[name]))]
 
 
 def _last_rows(one: h5py.Dataset, other: h5py.Dataset) -> tuple[AnyArray, AnyArray]:
