@@ -92,7 +92,6 @@ class System:
         self.numbering = Numbering(self.comm, self.model.fields)
         self.prescribed: BoolArray
         self.prescribed_dofs: IntArray
-        self.free_dofs: IntArray
         self.renew_prescribed()
 
     def _weigh_moments(self) -> tuple[float, Array]:
@@ -142,7 +141,7 @@ class System:
     def renew_prescribed(self) -> None:
         """Look anew which dofs are free, where the matrix is not asked for."""
         self.prescribed = np.concatenate([f.prescribed for f in self.model.fields])
-        self.prescribed_dofs, self.free_dofs = np.flatnonzero(self.prescribed), np.flatnonzero(~self.prescribed)
+        self.prescribed_dofs = np.flatnonzero(self.prescribed)
 
     def prescribe(self, state: State) -> None:
         """Write the prescribed motion at state.t into the state's arrays."""

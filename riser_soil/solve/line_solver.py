@@ -148,8 +148,12 @@ class LineSolver(StepResults):
         """When Newton's iterations stop. A smooth motion takes an iteration at least, which reduces its load."""
         gradual = self.system.gradual and all(each.gradual for each in self._couplings)
         smooth = self.system.smooth
-        done_at_start = smooth or at_equilibrium or np.count_nonzero(step.guess[self.system.free_dofs]) > 0
+        done_at_start = smooth or at_equilibrium or self._moves_freely(step.guess)
         return limits_of(settings, smooth, gradual, done_at_start, step.scheme.step_over_trial)
+
+    def _moves_freely(self, increments: Array) -> bool:
+        """Whether increments are of more than prescribed dofs."""
+        return np.count_nonzero(increments) > np.count_nonzero(increments[self.system.prescribed_dofs])
 
     def _tangle(self, trial: StepTrial) -> str:
         """Why the solution is not an admissible state of a line; "" where it is."""

@@ -19,6 +19,7 @@ from riser_soil.errors import ResultsError, SceneError, WriteError
 from riser_soil.results import Run
 from riser_soil.results.schedule import DueOutputs, Schedule, SimulatedTime
 from riser_soil.results.screen import Progress, print_summary
+from tests.support.equal_runs import datasets
 from tests.support.recorded_run import (
     CATENARY_ARC,
     NOWHERE,
@@ -251,10 +252,8 @@ def test_many_steps_at_once_are_recorded_as_one_by_one(tmp_path: Path, interval:
 
 def numbers_in(path: Path) -> dict[str, Any]:
     """All datasets of an HDF5 file."""
-    numbers: dict[str, Any] = {}
     with h5py.File(path) as file:
-        file.visititems(lambda name, at: numbers.update({name: at[...]} if isinstance(at, h5py.Dataset) else {}))
-    return numbers
+        return {name: at[()] for name, at in datasets(file)}
 
 
 def test_a_run_that_begins_in_motion_is_recorded_from_its_beginning(tmp_path: Path) -> None:
