@@ -47,9 +47,6 @@ from riser_soil.seabed.grounds import Ground
 from riser_soil.seabed.law import NormalLaw
 from riser_soil.seabed.points import seabed_points
 
-FLAT: Mat = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-
-
 class LineFrame(NamedTuple):
     """Origin [m] and axes of a line, global; the rows of `axes` are unit vectors, the third 0 in the plane."""
 
@@ -185,10 +182,8 @@ def normal_at(touching: TouchingStations, p: int) -> Vec:
 
 
 @njit
-def bend_at(part: SeabedData, p: int) -> Mat:
-    """Hessian of the distance of a station [1/m] in the line's axes; zero on flat ground."""
-    if part.flat:
-        return FLAT
+def _bend_at(part: SeabedData, p: int) -> Mat:
+    """Hessian of the distance of a station [1/m] in the line's axes."""
     axes = part.touching.frame.axes
     bend: Mat = matmul(matmul(axes, matrix(part.hessian[p])), transpose(axes))
     return bend
@@ -198,6 +193,15 @@ def bend_at(part: SeabedData, p: int) -> Mat:
 def by_position(force: float, slope: float, normal: Vec, bend: Mat) -> Mat:
     """Derivative by the position of minus the force per length on the riser; bend: derivative of the normal."""
     return matadd(matscale(slope, outer(normal, normal)), matscale(-force, bend))
+
+
+@njit
+def _by_position_at(part: SeabedData, p: int) -> Mat:
+    """The same of a station in the line's axes; the normal of flat ground stays as it is."""
+    normal, force, slope = normal_at(part.touching, p), part.touching.force[p], part.touching.slope[p]
+    if part.flat:
+        return matscale(slope, outer(normal, normal))
+    return by_position(force, slope, normal, _bend_at(part, p))
 
 
 @njit
@@ -264,8 +268,7 @@ def _contact_tangent(part: SeabedData, at: Configuration, maps: Maps, weights: W
         for g in range(ng):
             p = e * ng + g
             if touching.acts[p]:
-                normal, bend = normal_at(touching, p), bend_at(part, p)
-                write_matrix(by_position(touching.force[p], touching.slope[p], normal, bend), touching.by)
+                write_matrix(_by_position_at(part, p), touching.by)
                 pressed = touching.at.N[e, g], touching.by, maps.place_rows[e]
                 add_weighed(touching.element, touching.at.weighted[e, g], (pressed,), at.D, at.R)
         add_pulled_back(K[e], at.P[e], touching.element, at.D, at.R)

@@ -53,14 +53,14 @@ def first_swung(chord0: Array, tangent0: Array, chord: Array, tangent: Array, lo
     loose: see `first_folded`.
     """
     ne, d = chord.shape
-    first, second = np.empty(d), np.empty(d)
+    first, second, least = np.empty(d), np.empty(d), math.cos(most)
     for e in range(ne):
         if _is_shorter(chord0[e], loose[e]) or _is_shorter(chord[e], loose[e]):
             continue
         _write_unit(chord0[e], first)
         _write_unit(chord[e], second)
         for side in range(2):
-            if _cosine_of_swing(first, tangent0[e, side], second, tangent[e, side]) < math.cos(most):
+            if _cosine_of_swing(first, tangent0[e, side], second, tangent[e, side]) < least:
                 return e
     return ne
 
@@ -70,8 +70,9 @@ def _write_unit(vector: Array, out: Array) -> None:
     square = 0.0
     for i in range(out.size):
         square += vector[i] ** 2
+    length = math.sqrt(square)
     for i in range(out.size):
-        out[i] = vector[i] / math.sqrt(square)
+        out[i] = vector[i] / length
 
 
 @njit
