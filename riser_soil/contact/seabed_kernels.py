@@ -47,6 +47,7 @@ from riser_soil.seabed.grounds import Ground
 from riser_soil.seabed.law import NormalLaw
 from riser_soil.seabed.points import seabed_points
 
+
 class LineFrame(NamedTuple):
     """Origin [m] and axes of a line, global; the rows of `axes` are unit vectors, the third 0 in the plane."""
 

@@ -31,6 +31,7 @@ from numba.core import event
 from numba.extending import overload
 
 from riser_soil.core.environment import processor, rank
+from riser_soil.core.frame_room import with_room
 from riser_soil.core.kernel_cache import (
     caching_in,
     dependencies,
@@ -81,6 +82,7 @@ class Kernel:
         self._latest[types] = self._made_for(arguments)
         return self._latest[types](*arguments)
 
+    @with_room
     def _made_for(self, arguments: tuple[Any, ...]) -> Any:
         """What is compiled for arguments; a kind, such as arrays that are not packed, may be of several types."""
         signature = tuple(map(numba.typeof, arguments))

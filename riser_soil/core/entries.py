@@ -22,6 +22,7 @@ from numba import config, types
 
 from riser_soil.core.arrays import IntArray
 from riser_soil.core.compiled import OPTIONS, compiling, keeping, njit, place_of
+from riser_soil.core.frame_room import with_room
 from riser_soil.core.kinds import BY_ADDRESS, ArrayKind, Kind, TupleKind, classes, mark
 from riser_soil.core.packed import layout
 from riser_soil.core.side_by_side import side_by_side
@@ -68,6 +69,7 @@ class Entry:
         self._wanted_in.clear()
 
     @cached_property
+    @with_room
     def compiled(self) -> Any:
         """The C function, which has its address."""
         signature = types.void(types.CPointer(types.voidptr), types.CPointer(ENTRY))
