@@ -24,6 +24,7 @@ from riser_soil.assembly.contact_laws import contact_width
 from riser_soil.assembly.scales import Scales
 from riser_soil.assembly.soil_sizes import touching_width
 from riser_soil.core.arrays import Array
+from riser_soil.core.identity_cache import IdentityCache
 from riser_soil.riser.sections import Elements
 from riser_soil.riser.touchdown_bend import TouchdownBend
 from riser_soil.scene.soil import SoilScene
@@ -39,6 +40,7 @@ DEPTHS = 200  # points of the integral over the depth
 # that much longer than the one before; at most so many.
 FIRST, GROWTH, STEPS = 0.02, 1.05, 200
 ROUNDS = 20  # in which load and settlement under the touchdown point come to agree
+_SHARES: IdentityCache[SoilLaw, float] = IdentityCache(latest=8)  # of laws, see `secant_share`
 
 
 class Settled(NamedTuple):
@@ -107,7 +109,7 @@ def _moduli(soil: SoilScene, z: Array) -> Array:
     for n, law in enumerate(laws):
         below = z[at == n]
         formula = law.at_points(below - tops[n], initial_stress(soil, below))
-        G, K = formula.shear * secant_share(law), formula.bulk
+        G, K = formula.shear * _SHARES.made_of(law, secant_share), formula.bulk
         moduli[at == n] = 4.0 * G * (3.0 * K + G) / (3.0 * K + 4.0 * G)
     return moduli
 

@@ -58,16 +58,16 @@ def write_report(given: ReportFile, file: Path, on_progress: OnProgress = silent
     is then as it was.
     """
     write = writer_of(file)
-    document = document_of(opened(given))
-    count = sum(isinstance(item, PictureBlock) for item in numbered(document))
-    begun = 0
+    sources, begun, count = opened(given), 0, 0
 
     def began(item: PictureBlock) -> None:
         nonlocal begun
         on_progress(item.caption.partition(":")[0], begun, count)
         begun += 1
 
-    with written_whole(file) as part:
+    with written_whole(file) as part:  # which says it, before anything is drawn, where there is no such folder
+        document = document_of(sources)
+        count = sum(isinstance(item, PictureBlock) for item in numbered(document))
         write(document, part, began)
     return file
 

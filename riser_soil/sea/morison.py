@@ -206,7 +206,7 @@ def _add_whole_tangent(
     part: StillWaterData, at: Configuration, maps: Maps, weights: Weights, K: Array
 ) -> None:
     ne, D, d, workspace = part.drag.shape[0], at.D, len(at.D), part.workspace
-    batch, by = _batch(np.zeros((3 * d + 5, BATCH)), D), np.zeros((3, d, d, BATCH))
+    batch, by = _batch(np.ones((3 * d + 5, BATCH)), D), np.zeros((3, d, d, BATCH))
     for first in range(0, ne, ELEMENTS):
         after = min(first + ELEMENTS, ne)
         _read_stations(part, at, first, after, batch)

@@ -29,6 +29,7 @@ NU, D = 1.19e-6, 0.4
 CRISIS = [(1e4, 1.2), (2e5, 1.2), (4e5, 0.3), (4e6, 0.7)]
 WIDE = [(1e4, 1.4), (1e7, 0.2)]  # so that all of the sample's stations lie within it
 Maker = Callable[[Sample], Morison]
+as_python = pytest.mark.usefixtures("uncompiled")  # scenes below are computed by compiled kernels
 
 
 def tables(at: Sample, *rows: law.Rows) -> law.ReynoldsTables:
@@ -50,6 +51,7 @@ def half_out(at: Sample) -> Morison:
     return law.reynolds_drag(FlowAtStations(pipe, sample_water.water), tables(at, WIDE), pipe.span)
 
 
+@as_python
 @pytest.mark.parametrize(
     ("Re", "Cd"),
     [(1e2, 1.2), (1e5, 1.2), (2e5, 1.2), (np.sqrt(8e10), 0.75), (4e5, 0.3), (np.sqrt(16e11), 0.5), (5e6, 0.7)],
@@ -63,6 +65,7 @@ def test_the_coefficient_is_linear_in_the_logarithm(Re: float, Cd: float) -> Non
     np.testing.assert_allclose(force, expected * np.array([0.6, 0.8, 0.0]), rtol=1e-12, atol=1e-12 * expected)
 
 
+@as_python
 def test_no_flow_no_drag() -> None:
     tables, none = law.tables_of(RHO, NU, np.array([D]), [CRISIS]), np.zeros(3)
     tau = np.array([0.0, 0.0, 1.0])
@@ -70,6 +73,7 @@ def test_no_flow_no_drag() -> None:
     assert not np.any(derivatives(tables, none, tau))
 
 
+@as_python
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("make", [still, flowing, half_out])
 def test_tangent_is_the_derivative_of_the_residual(make: Maker, dimension: int) -> None:
@@ -78,6 +82,7 @@ def test_tangent_is_the_derivative_of_the_residual(make: Maker, dimension: int) 
     assert error(tangent([part], state, WEIGHTS), difference_tangent(part, state, WEIGHTS)) < 1e-7
 
 
+@as_python
 def test_the_change_of_the_coefficient_is_in_the_tangent() -> None:
     """Along the flow d(Cd w^2)/dw = 2 Cd w + w dCd/dln Re, across it Cd w."""
     Re, slope = np.sqrt(8e10), (0.3 - 1.2) / np.log(2.0)
@@ -88,6 +93,7 @@ def test_the_change_of_the_coefficient_is_in_the_tangent() -> None:
     np.testing.assert_allclose(by_v, expected, rtol=1e-12, atol=1e-12 * half * w)
 
 
+@as_python
 def test_a_table_of_one_value_is_a_constant_coefficient() -> None:
     at, state = sample(3), sample(3).state(1)
     e = at.elements
