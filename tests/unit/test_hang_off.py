@@ -189,8 +189,8 @@ def test_a_vessel_that_another_end_hangs_on_does_not_come_along(tmp_path: Path) 
 
 
 def test_a_run_that_ends_early_tells_what_was_found_and_so_does_its_restart(tmp_path: Path) -> None:
-    scene = hanging(CHAIN | {"mass": 20.0}, angle=20.0)
-    scene["stages"] = [static(), dynamic(0.5, 0.1)]
+    scene = hanging(CHAIN | {"mass": 20.0}, elements=10, angle=20.0)
+    scene["stages"] = [static(), dynamic(0.3, 0.1)]
     given, folder, usual = scene_from_mapping(scene), tmp_path / "run", Observer.record
 
     def record_and_leave(self: Observer, *arguments: Any, **more: Any) -> None:
@@ -250,7 +250,7 @@ def test_what_a_hang_off_needs(change: Mapping, message: str) -> None:
 
 def test_commands_tell_what_was_found(tmp_path: Path) -> None:
     file = tmp_path / "scene.yaml"
-    file.write_text(json.dumps(hanging(angle=20.0)))
+    file.write_text(json.dumps(hanging(elements=10, angle=20.0)))
     guessed = CliRunner().invoke(app, ["check", str(file)])
     assert re.search(r"angle of 20 deg: .*layback of \d", guessed.output.splitlines()[0])
     assert CliRunner().invoke(app, ["run", str(file), "-o", str(tmp_path / "run")]).exit_code == 0

@@ -14,6 +14,7 @@ import pytest
 
 from riser_soil.results import Run
 from tests.support.on_ranks import HANGS, Job, mpirun
+from tests.support.runs import run_of
 from tests.support.scenes import LAY, Mapping, heave, lying_pipe, touchdown
 from tests.support.vtk_reading import read_by_vtk
 
@@ -94,9 +95,7 @@ def test_soil_loaded_beyond_its_capacity_is_an_error(ranks: int, tmp_path: Path)
 
 
 def test_soil_loaded_below_its_capacity_is_none(tmp_path: Path) -> None:
-    done = command(tmp_path, 1, lying_pipe(su=1000.0))
-    assert done.returncode == 0, done.stderr
-    assert Run(tmp_path / "out").finished
+    assert run_of(lying_pipe(su=1000.0), tmp_path / "out").finished
 
 
 @pytest.mark.verify

@@ -131,7 +131,7 @@ def test_snes_finds_the_flight_of_a_rigid_body_that_the_line_solver_finds() -> N
 
 
 def test_energy_errs_in_second_order() -> None:
-    ranges = np.array([Flight(3, dt).energy_range for dt in (0.05, 0.025, 0.0125)])
+    ranges = np.array([Flight(3, dt, 8.0).energy_range for dt in (0.05, 0.025, 0.0125)])
     assert np.all(np.log2(ranges[:-1] / ranges[1:]) > 1.9)
 
 

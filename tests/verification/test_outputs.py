@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -32,10 +33,13 @@ WHOLE = ("touchdown_arc", "touchdown_points", "max_penetration", "contact_force"
 PLACED = ("max_bending_moment", "max_curvature", "min_bend_radius", "min_effective_tension", "max_embedment")
 
 
+riser_by_vtk = cache(read_by_vtk)
+
+
 def test_vtk_reads_the_riser(on_block: WatchedRun) -> None:
     run = Run(on_block.folder)
-    times, frames = read_by_vtk(on_block.folder / "riser.xdmf")
-    assert len(times) == 1 + 24, "the laid riser, then every half second"
+    times, frames = riser_by_vtk(on_block.folder / "riser.xdmf")
+    assert len(times) == 1 + 8, "the laid riser, then every half second"
     rows = np.searchsorted(run.time, np.array(times) - 1e-9)
     np.testing.assert_allclose(run.time[rows], times, atol=1e-12)
     for row, frame in zip(rows, frames, strict=True):
@@ -49,9 +53,9 @@ def test_vtk_reads_the_riser(on_block: WatchedRun) -> None:
 def test_vtk_reads_the_soil(on_block: WatchedRun) -> None:
     run = Run(on_block.folder)
     times, frames = read_by_vtk(on_block.folder / "soil.xdmf")
-    riser_times, _ = read_by_vtk(on_block.folder / "riser.xdmf")
+    riser_times, _ = riser_by_vtk(on_block.folder / "riser.xdmf")
     assert times == riser_times, "both on one time axis"
-    volume = 16.0 * 4.0 * 1.5
+    volume = 16.0 * 4.0 * 1.75
     for number, frame in enumerate(frames):
         assert set(frame["cell_types"].tolist()) == {HEXAHEDRON}
         assert frame["volumes"].sum() == pytest.approx(volume, rel=1e-9)
@@ -95,7 +99,7 @@ def test_pipe_lies_on_the_soil_in_the_files(on_block: WatchedRun) -> None:
 def test_xarray_opens_the_series(on_block: WatchedRun) -> None:
     with xarray.open_dataset(on_block.folder / "results.nc", engine="h5netcdf", decode_times=False) as data:
         nodes = 150
-        sizes = {"time": 121, "step": 128, "arc": nodes, "component": 3, "section": 1, "offset": 61}
+        sizes = {"time": 41, "step": 48, "arc": nodes, "component": 3, "section": 1, "offset": 61}
         assert dict(data.sizes) == sizes
         assert data.attrs["finished"] == 1
         assert data.attrs["title"] == "Touchdown on soft clay"
@@ -138,7 +142,7 @@ def test_summary_is_as_documented(on_block: WatchedRun) -> None:
         assert stage["warnings"] == []
     assert [(s["name"], s["kind"], s["time"], s["steps"]) for s in summary["stages"]] == [
         ("lay", "static", 0.0, 8),
-        ("heave", "dynamic", 12.0, 120),
+        ("heave", "dynamic", 4.0, 40),
     ]
     lost = summary["stages"][1]["energy"]["dissipated_by"]
     assert sum(lost.values()) == pytest.approx(summary["stages"][1]["energy"]["dissipated"])

@@ -21,7 +21,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Run]:
     results = {}
     for way, text in WAYS.items():
         folder = tmp_path_factory.mktemp("run")
-        given = touchdown(LAY, heave(0.9, 0.05), su=1000.0, tolerance=1e-9)
+        given = touchdown(LAY, heave(0.9), su=1000.0, tolerance=1e-9)
         given["soil"] |= {"strain": "small", "symmetry": "whole"}
         if text is not None:
             (folder / "my_terms.py").write_text(text, encoding="utf-8")

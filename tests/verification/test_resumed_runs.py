@@ -25,6 +25,7 @@ SLUG = "slugs: [{density: 800.0, length: 12.0, spacing: 40.0, front: 90.0}]"
 SLUGS = f"riser.contents={{density: 90.0, speed: 8.0, {SLUG}}}"
 STORM = ("water.waves.jonswap.components=10", "water.waves.ramp=1.0", "output.xdmf_interval=0.4")
 DEMO, SHORT_BLOCK, SECTIONS = "demos/touchdown_clay/scene.yaml", "soil.block.x=[25.5,29.5]", "soil.model=sections"
+HALF = (SHORT_BLOCK, "soil.mesh={size_at_riser: {along: 1.0, across: 0.15, strip: 0.3}, size_far: 1.0}")
 COARSE = ("soil.mesh.size_at_riser=1.0", "soil.mesh.size_far=2.0", "stages.1.time_step=0.2")
 
 
@@ -100,7 +101,7 @@ SHORT = {
     "waves": (two_storms, (4, 7)),
     "touchdown on clay": (lambda: shortened("tests/scenes/touchdown_on_block.yaml", 1.0, *COARSE), (4,)),
     "touchdown in sections": (lambda: shortened(DEMO, 0.4, SHORT_BLOCK, SECTIONS), (4,)),
-    "touchdown on half a block": (lambda: shortened(DEMO, 0.4, SHORT_BLOCK), (3,)),
+    "touchdown on half a block": (lambda: shortened(DEMO, 0.4, *HALF), (3,)),
     "plastic clay in space": (plastic_clay_in_space, (4,)),
     "surface contact on plastic clay": (surface_on_clay, (4, 10)),
     "kept factors": (kept_factors, (4, 10, 12)),

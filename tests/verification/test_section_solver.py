@@ -22,7 +22,7 @@ from riser_soil.solve.section_solver import SectionSolver
 from riser_soil.solve.time_stepper import AcceptedStep
 from tests.support.driven_stage import built, take
 from tests.support.run_on_ranks import COMPARED, ran
-from tests.support.scenes import LAY, Mapping, heave, touchdown
+from tests.support.scenes import LAY, Mapping, cells, heave, touchdown
 
 SECTIONS = 14
 FRICTION: Mapping = {"axial": 0.3, "lateral": 0.3}
@@ -83,7 +83,9 @@ def test_each_newton_step_solves_its_linear_system(contact: Mapping, monkeypatch
 
     monkeypatch.setattr(SectionSolver, "apply", judge)
     monkeypatch.setattr(SectionFactors, "factorise", accepted)
-    steps(on_sections("auto", tolerance=1e-7, **contact))
+    scene = on_sections("auto", tolerance=1e-7, **contact)
+    scene["soil"]["mesh"] = cells({"along": 0.5, "across": 0.1, "strip": 0.15}, 1.0)
+    steps(scene)
     assert max(errors) < 1e-11
     assert len(errors) > 20
     assert sum(made) < 0.8 * SECTIONS * len(errors)

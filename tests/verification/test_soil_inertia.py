@@ -24,8 +24,8 @@ WAYS: dict[str, tuple[Mapping, Mapping]] = {
 }
 
 
-def scene(soil: Mapping, stage: Mapping) -> Mapping:
-    given = touchdown(LAY, heave(1.5, 0.05) | stage, su=1000.0, tolerance=1e-9)
+def scene(soil: Mapping, stage: Mapping, duration: float = 1.5) -> Mapping:
+    given = touchdown(LAY, heave(duration) | stage, su=1000.0, tolerance=1e-9)
     given["soil"] |= soil
     return given | {"contact": {"method": "surface", "smoothing": 1e-3}}
 
@@ -70,11 +70,14 @@ def test_schemes_agree(runs: dict[str, Run]) -> None:
 
 
 def test_ranks_agree(runs: dict[str, Run], tmp_path: Path) -> None:
-    (tmp_path / "scene.yaml").write_text(json.dumps(scene(*WAYS["absorbing"])), encoding="utf-8")
+    """In the first steps."""
+    (tmp_path / "scene.yaml").write_text(json.dumps(scene(*WAYS["absorbing"], duration=0.5)), encoding="utf-8")
     done = mpirun(2, "-m", "riser_soil", "run", "scene.yaml", "-o", "out", folder=tmp_path)
     assert done.returncode == 0, done.stderr
     several, alone = Run(tmp_path / "out"), runs["absorbing"]
     assert several.summary["ranks"] == 2
-    np.testing.assert_allclose(several["position"], alone["position"], atol=1e-7)
+    np.testing.assert_allclose(several["position"], alone["position"][: several.time.size], atol=1e-7)
     for name in ("kinetic_energy", "dissipated_soil_boundary"):
-        np.testing.assert_allclose(several[name], alone[name], rtol=1e-5, atol=1e-5 * np.abs(alone[name]).max())
+        expected = alone[name][: len(several[name])]
+        assert expected.max() > 0.0
+        np.testing.assert_allclose(several[name], expected, rtol=1e-5, atol=1e-5 * np.abs(expected).max())

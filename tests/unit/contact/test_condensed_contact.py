@@ -17,6 +17,8 @@ from riser_soil.riser.placed_line import LineTrials
 from tests.support.pipe_on_surface import RADIUS, PipeOnSurface, pipe_on_surface, sagging
 from tests.support.soil_tops import top
 
+pytestmark = pytest.mark.usefixtures("uncompiled")
+
 METHODS = pytest.mark.parametrize("method", ["node", "surface"])
 NARROW = CandidateRange(above=0.02, around=0.02)
 

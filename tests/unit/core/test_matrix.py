@@ -155,9 +155,11 @@ if comm.rank == 0:
 
 
 @pytest.mark.parametrize("ranks", [2, pytest.param(3, marks=pytest.mark.verify)])
-def test_product_on_ranks(tmp_path: Path, ranks: int) -> None:
+def test_product_on_ranks(tmp_path: Path, ranks: int, capsys: pytest.CaptureFixture[str]) -> None:
     script = tmp_path / "on_ranks.py"
     script.write_text(ON_RANKS)
-    alone, together = (np.array(mpirun(n, str(script)).stdout.split(), dtype=float) for n in (1, ranks))
+    exec(ON_RANKS, {})
+    printed = capsys.readouterr().out, mpirun(ranks, str(script)).stdout
+    alone, together = (np.array(each.split(), dtype=float) for each in printed)
     assert len(alone) == 42
     assert together == pytest.approx(alone, rel=1e-12)

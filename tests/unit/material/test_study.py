@@ -16,6 +16,7 @@ from typer.testing import CliRunner, Result
 
 from riser_soil.__main__ import app
 from riser_soil.core.arrays import Array
+from riser_soil.material.memory import CYCLES
 from riser_soil.material.path import shear_path
 from riser_soil.material.point import MaterialPoint, drive
 from riser_soil.material.study import closed_cycles, turns
@@ -43,17 +44,19 @@ FILES = {"material.csv", "material_cycles.csv", "material_memory.csv", "material
 Call = Callable[..., Result]
 
 
+def drawn(curve: Path, cycles: Path, png: Path) -> None:
+    png.write_bytes(b"riser_soil material: ")
+
+
 @pytest.fixture
 def material(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Call:
     """Runs the command in an empty folder, on the small scene's soil with a law, along the text of a CSV file; draws
-    where no path is given.
+    where no path is given. cycles: of a mean stress and a mean strain, of which a law keeps what it remembers.
     """
     monkeypatch.chdir(tmp_path)
 
-    def drawn(curve: Path, cycles: Path, png: Path) -> None:
-        png.write_bytes(b"riser_soil material: ")
-
-    def call(law: dict[str, Any], path: str | None = None, *options: str, **soil: float) -> Result:
+    def call(law: dict[str, Any], path: str | None = None, *options: str, cycles: int = 2, **soil: float) -> Result:
+        monkeypatch.setattr("riser_soil.material.memory.CYCLES", cycles)
         scene = touchdown()
         scene["soil"] |= {"law": law, **soil}
         Path("scene.yaml").write_text(json.dumps(scene))
@@ -126,7 +129,8 @@ def test_loops_of_the_overlay_have_masings_damping(material: Call, amplitude: fl
     np.testing.assert_allclose(cycles["strain_amplitude"], amplitude, rtol=1e-9)
 
 
-def test_dissipation_is_the_area_of_the_loops(material: Call) -> None:
+def test_dissipation_is_the_area_of_the_loops(material: Call, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("riser_soil.plots.soil_curves.draw", drawn)
     assert material(IWAN).exit_code == 0
     curve = table("material.csv")
     cycles = table("material_cycles.csv")
@@ -156,7 +160,7 @@ def test_a_fading_backstress_lets_go_of_a_mean_stress() -> None:
 
 def test_a_fading_backstress_strains_on_under_a_mean_stress(material: Call) -> None:
     """(1/k) ln[(a² - αmin²)/(a² - αmax²)] in each cycle, see riser_soil/soil/kinematic_hardening.py."""
-    done = material(KINEMATIC, "gamma_xz [-]\n1e-4\n")
+    done = material(KINEMATIC, "gamma_xz [-]\n1e-4\n", cycles=CYCLES)
     assert done.exit_code == 0, done.output
     memory = table("material_memory.csv")
     largest, a, q0 = memory["stress_at_0.001"][0], 0.8 * SU, 0.2 * SU
@@ -168,7 +172,7 @@ def test_a_fading_backstress_strains_on_under_a_mean_stress(material: Call) -> N
 
 @pytest.mark.parametrize("law", [IWAN, ELASTIC], ids=["iwan", "linear elastic"])
 def test_closed_loops_keep_mean_stress_and_strain(material: Call, law: dict[str, Any]) -> None:
-    done = material(law, "gamma_xz [-]\n1e-4\n")
+    done = material(law, "gamma_xz [-]\n1e-4\n", cycles=5)
     assert done.exit_code == 0, done.output
     memory = table("material_memory.csv")
     del memory["cycle"]

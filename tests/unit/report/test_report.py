@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 from xml.etree import ElementTree
 
 import numpy as np
@@ -24,6 +25,7 @@ from typer.testing import CliRunner
 
 from riser_soil.__main__ import app
 from riser_soil.errors import ResultsError, WriteError
+from riser_soil.plots.album import TouchdownView
 from riser_soil.plots.curves import STYLE, Curves
 from riser_soil.report.document import Heading, Item, Paragraph, PictureBlock, Points, TableBlock, numbered
 from riser_soil.report.extremes import error_bars, key_results_table, reactions_table
@@ -87,9 +89,19 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
     return recorded(tmp_path_factory.mktemp("report") / "run", mesh=block(8, 4, 2))
 
 
+# Where nobody looks at the picture of the touchdown zone, which takes longer to draw than all else does together.
+NOT_DRAWN = patch.object(TouchdownView, "png", b"not drawn")
+
+
+@NOT_DRAWN
+def document(folder: Path, **given: str) -> list[Item]:
+    """What stands in a run's report."""
+    return numbered(document_of(opened(of_folders([folder], given))))
+
+
 @pytest.fixture(scope="module")
 def items(run: Run) -> list[Item]:
-    return numbered(document_of(opened(of_folders([run.folder], {"client": "A <client>", "document": "X-1"}))))
+    return document(run.folder, client="A <client>", document="X-1")
 
 
 @pytest.fixture(scope="module")
@@ -241,7 +253,7 @@ def test_there_is_one_maximum(run: Run, tmp_path: Path) -> None:
     moment = summary["stages"][1]["extremes"]["max_bending_moment"]
     moment["max"], moment["arc_max"] = 1.07 * moment["max"], 33.33
     (tmp_path / "run" / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
-    items, known = numbered(document_of(opened(of_folders([tmp_path / "run"], {})))), 1e-3 * moment["max"]
+    items, known = document(tmp_path / "run"), 1e-3 * moment["max"]
     rows = (row(table(items, key), "maximum bending moment") for key in ("summary", "governing"))
     assert {each["value"].split(" ± ")[0] for each in rows} == {number(known, 4)}
     begins = "Bending moment along the line, load"
@@ -316,7 +328,7 @@ def test_without_a_code_check_that_is_said(run: Run, items: list[Item], tmp_path
     for stage in summary["stages"]:
         del stage["code_check"]
     (tmp_path / "run" / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
-    unchecked = said(numbered(document_of(opened(of_folders([tmp_path / "run"], {})))))
+    unchecked = said(document(tmp_path / "run"))
     assert len(unchecked) == 2, "in the summary and in its chapter"
 
 
@@ -332,7 +344,7 @@ def test_walls_contents_and_hang_off_of_the_scene(run: Run, tmp_path: Path) -> N
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     summary["hang_off"] = {"end": "end", "asked": {"tension": 9e4}, "by": "layback", "value": 81.25}
     (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
-    items = numbered(document_of(opened(of_folders([folder], {}))))
+    items = document(folder)
     pipe = next(item.content for item in items if isinstance(item, TableBlock) and "line types" in item.caption)
     assert row(pipe, "specified minimum yield stress")["flexible"] == "448"
     assert not [row for row in pipe.rows if "damping" in row[0]]
@@ -366,13 +378,14 @@ def test_a_run_whose_scene_is_gone_is_reported_without_it(run: Run, tmp_path: Pa
     folder = tmp_path / "run"
     shutil.copytree(run.folder, folder)
     (folder / "scene.yaml").unlink()
-    document = numbered(document_of(opened(of_folders([folder], {}))))
-    words = "\n".join(texts(document))
+    items = document(folder)
+    words = "\n".join(texts(items))
     line_with(words, "input file cannot be read", "values are not shown")
-    assert table(document, "summary").rows
+    assert table(items, "summary").rows
     assert str(tmp_path) not in words
 
 
+@NOT_DRAWN
 def test_what_cannot_be_reported_is_said(run: Run, tmp_path: Path) -> None:
     with pytest.raises(WriteError, match="there is no folder"):
         write_report(of_folders([run.folder], {}), tmp_path / "nowhere" / "report.html")

@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from riser_soil.checks.settlement import predicted_settlement
 from riser_soil.core.arrays import Array
 from riser_soil.errors import SceneError
+from riser_soil.results import Run
 from riser_soil.scene.document import parse
 from riser_soil.scene.dump import dump_scene
 from riser_soil.scene.identity import first_difference, identity_of
@@ -23,6 +24,7 @@ from riser_soil.soil.imported_law import ImportedLaw
 from riser_soil.soil.large_strain import turned
 from riser_soil.soil.law import STRESS
 from riser_soil.soil.von_mises import VonMises
+from riser_soil.whole_run import run
 from tests.support.driven_stage import built
 from tests.support.material_paths import initial_stress, random_paths
 from tests.support.run_on_ranks import COMPARED, ran
@@ -250,7 +252,8 @@ def test_two_ranks_find_on_it_what_one_finds_on_the_program_s_own_clay(tmp_path:
     scene = clay_scene(tmp_path)
     given = {key: value for key, value in scene["soil"]["law"].items() if key != "from"}
     program_s = scene | {"soil": scene["soil"] | {"law": given | {"kind": "von-mises"}}}
-    wanted, computed = (ran(each, tmp_path / f"on{n}", n).dataset for n, each in ((1, program_s), (2, scene)))
+    run(scene_from_mapping(program_s), tmp_path / "on1")
+    wanted, computed = Run(tmp_path / "on1").dataset, ran(scene, tmp_path / "on2", 2).dataset
     for name in COMPARED:
         largest = float(np.abs(wanted[name]).max())
         np.testing.assert_allclose(computed[name], wanted[name], rtol=1e-6, atol=1e-6 * largest)

@@ -112,9 +112,9 @@ def test_factors_are_made_anew_once_a_solve_costs_more_than_the_mean(symmetric: 
     """So that no solve pays for factors that no longer suit it. The change grows from solve to solve; how often
     hangs on what a factorisation is worth by the counts of MUMPS, whose versions order differently.
     """
-    for k in range(40):
+    for k in range(20):
         symmetric.solution(stiffened(50.0, 1 + k), B)
-    assert 2 <= symmetric.kept.factorisations <= 20
+    assert 2 <= symmetric.kept.factorisations <= 10
 
 
 def test_moments_count_over_their_levers(symmetric: Solver) -> None:
@@ -171,9 +171,9 @@ def test_restored_factors_go_on_to_the_last_bit(symmetric: Solver) -> None:
         symmetric.solution(stiffened(50.0, 1 + k), B)
     made, other = symmetric.kept.factorisations, Solver(symmetric=True)
     other.kept.restore(symmetric.kept.state())
-    for k in range(3, 20):
+    for k in range(3, 11):
         assert np.array_equal(symmetric.solution(stiffened(50.0, k), B), other.solution(stiffened(50.0, k), B))
-    assert other.kept.factorisations == symmetric.kept.factorisations - made
+    assert other.kept.factorisations == symmetric.kept.factorisations - made > 0
     other.destroy()
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -14,10 +15,13 @@ from riser_soil.assembly import build
 from riser_soil.core.arrays import Array, BoolArray
 from riser_soil.core.bound import in_turn
 from riser_soil.core.part import Energy, State
+from riser_soil.core.roles import owners
+from riser_soil.core.saved_state import Saved, gathered, restore_all
 from riser_soil.core.system import System, Timer
 from riser_soil.riser.part_kernels import Border
 from riser_soil.riser.section_forces import SectionForces
 from riser_soil.scene.reader import scene_from_mapping
+from riser_soil.scene.scene import Scene
 from riser_soil.solve.bordered_band import band_of
 from riser_soil.solve.line_solver import LineSolver
 from riser_soil.solve.line_system import LineSystem
@@ -88,13 +92,29 @@ SCENES = {
 }
 
 
-def last_stage(case: str, newton: str) -> TimedStage:
+def scene_of(case: str, newton: str) -> Scene:
     solver = {"newton": newton, "tolerance": 1e-9} | ({"soil": "condensed"} if "soil" in case else {})
-    scene = scene_from_mapping(SCENES[case]() | {"solver": solver})
+    return scene_from_mapping(SCENES[case]() | {"solver": solver})
+
+
+@cache
+def at_rest(case: str) -> tuple[Saved, Saved]:
+    """What the assembly and its parts keep at the end of the static stage."""
+    scene = scene_of(case, "compiled")
     assembly = build(scene, MPI.COMM_SELF)
     before, _ = lay(assembly, Timer.new())
-    before = run_stage(assembly, scene.stages[0], before, LayingCounter(), Timer.new())
-    return TimedStage(assembly, scene.stages[1], before, Timer.new())
+    run_stage(assembly, scene.stages[0], before, LayingCounter(), Timer.new())
+    kept = assembly.state()
+    return kept, gathered(owners(assembly.begin(scene.stages[0])))
+
+
+def last_stage(case: str, newton: str) -> TimedStage:
+    """The second stage, as it begins."""
+    scene, (of_assembly, of_parts) = scene_of(case, newton), at_rest(case)
+    assembly = build(scene, MPI.COMM_SELF)
+    restore_all(owners(assembly.begin(scene.stages[0])), of_parts)
+    assembly.restore(of_assembly)
+    return TimedStage(assembly, scene.stages[1], State.at_rest(0.0, assembly.size), Timer.new())
 
 
 @pytest.mark.parametrize("case", SCENES)
