@@ -3,7 +3,8 @@ stay where they belong. Imports inside functions and for type checkers count as 
 """
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -63,15 +64,18 @@ ONLY_IN: dict[str, str | tuple[str, ...]] = {  # what costs time to import, or m
 }
 
 
-def imported_names(source: str, package: str) -> Iterator[str]:
+@cache
+def imported_names(source: str, package: str) -> list[str]:
     """Full names of everything that `source`, in `package`, imports at module level or inside functions."""
+    names = list[str]()
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
+            names += (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             above = package.split(".")[: len(package.split(".")) - node.level + 1] if node.level else []
             base = ".".join([*above, *([node.module] if node.module else [])])
-            yield from (f"{base}.{alias.name}" for alias in node.names)
+            names += (f"{base}.{alias.name}" for alias in node.names)
+    return names
 
 
 def within(name: str, place: str) -> bool:
@@ -96,6 +100,7 @@ def violations(module: str, source: str, package: str) -> list[str]:
     return wrong
 
 
+@cache
 def modules() -> dict[str, Path]:
     """All modules of the package but itself."""
     names = {}
@@ -106,6 +111,7 @@ def modules() -> dict[str, Path]:
     return names
 
 
+@cache
 def imports() -> dict[str, set[str]]:
     """Module -> the modules that it imports: the longest name of one in each name imported."""
     known, graph = modules(), {}
@@ -145,7 +151,7 @@ def test_a_circle_is_found() -> None:
 def test_imports_for_type_checkers_and_inside_functions_count() -> None:
     assert "riser_soil.solve.newton" in imports()["riser_soil.stages"]
     source = "if TYPE_CHECKING:\n    from riser_soil import a\ndef f():\n    from riser_soil.b import c"
-    assert list(imported_names(source, "riser_soil")) == ["riser_soil.a", "riser_soil.b.c"]
+    assert imported_names(source, "riser_soil") == ["riser_soil.a", "riser_soil.b.c"]
 
 
 def test_package_itself_imports_nothing_heavy() -> None:

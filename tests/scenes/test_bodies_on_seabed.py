@@ -193,30 +193,35 @@ def on_clay(*more: dict[str, Any]) -> dict[str, Any]:
     """The clump on clay with memory and friction, shaken by a chain."""
     heave = {"amplitude": [0.3, 0.2, 0.2], "period": 2.0, "ramp": 0.4}
     shake = {"lines": {"left": {"motion": {"start": {"harmonic": heave}}}}}
-    stage = {"name": "shaken", "kind": "dynamic", "duration": 0.6, "time_step": 0.02, **shake}
+    stage = {"name": "shaken", "kind": "dynamic", "duration": 0.2, "time_step": 0.02, **shake}
     law = {"kind": "aubeny-biscontin", "su": 4.0e3, "su_gradient": 1.5e3}
     scene = between_chains(stage, span=50.0, length=LONG, elements=12)
     ground = {"seabed": {"kind": "hysteretic", "level": -DEPTH, "law": law}, "contact": {"friction": {"axial": 0.3}}}
     return scene | ground
 
 
-def test_a_run_goes_on_from_its_checkpoint_with_what_clay_and_friction_remember(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """The run on clay, on one rank and without a break."""
+    return run_of(on_clay(), tmp_path_factory.mktemp("whole"))
+
+
+def test_a_run_goes_on_from_its_checkpoint_with_what_clay_and_friction_remember(whole: Run, tmp_path: Path) -> None:
     scene = scene_from_mapping(on_clay())
-    run(scene, tmp_path / "whole")
-    leave_after(20, scene, tmp_path / "left")
+    leave_after(7, scene, tmp_path / "left")
     run(scene, tmp_path / "left", restart=True)
-    whole, resumed = Run(tmp_path / "whole"), Run(tmp_path / "left")
+    resumed = Run(tmp_path / "left")
     for key in ("position", "contact_force", "penetration"):
         assert np.array_equal(whole[f"bodies/clump/{key}"], resumed[f"bodies/clump/{key}"]), key
     assert np.ptp(whole["bodies/clump/contact_force"][:, 0]) > 10.0  # it is dragged
 
 
-def test_two_ranks_find_the_same(tmp_path: Path) -> None:
-    one, other = (ran_on(on_clay(), tmp_path / str(ranks), ranks) for ranks in (1, 2))
-    assert other.summary["ranks"] == 2
+def test_two_ranks_find_the_same(whole: Run, tmp_path: Path) -> None:
+    other = ran_on(on_clay(), tmp_path / "2", 2)
+    assert (whole.summary["ranks"], other.summary["ranks"]) == (1, 2)
     for key, least in (("position", 1e-7), ("contact_force", 1.0), ("penetration", 1e-7)):
         path = f"bodies/clump/{key}"
-        assert other[path][-1] == pytest.approx(one[path][-1], rel=1e-5, abs=least), key
+        assert other[path][-1] == pytest.approx(whole[path][-1], rel=1e-5, abs=least), key
 
 
 def contacts_of(scene: dict[str, Any]) -> dict[str, BodyContact]:

@@ -1,20 +1,22 @@
-"""The first steps of a scene, and what they were computed with, as JSON: python few_steps.py SCENE.yaml FOLDER.
+"""The first steps of a scene, and what they were computed with, as JSON: python few_steps.py SCENE.yaml FOLDER [BARS].
 
-last: rates of all dofs at the end of the last step; iterations of all; kernels: modules and names of those that Python
-calls, bound to their arguments or not, which are compiled with all that they call in turn; late: places of those that
-wait for a call to be compiled, as no solver has done it before.
+BARS: what catenaries are cut into, by default as in any run. last: rates of all dofs at the end of the last step;
+iterations of all; kernels: modules and names of those that Python calls, bound to their arguments or not, which are
+compiled with all that they call in turn; late: places of those that wait for a call to be compiled, as no solver has
+done it before.
 """
 
 from __future__ import annotations
 
 import json
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
 
-def main(scene: str, folder: Path) -> None:
+def main(scene: str, folder: Path, bars: int | None) -> None:
     from riser_soil.core import bound as binding
     from riser_soil.core.bound import Bound
     from riser_soil.core.compiled import Kernel
@@ -24,6 +26,7 @@ def main(scene: str, folder: Path) -> None:
     from riser_soil.solve.time_stepper import TimeStepper
     from riser_soil.variants.short_runs import shortened
     from riser_soil.whole_run import run
+    from tests.support.coarse_cables import coarse_cables
 
     kernels, late, last, iterations = set[str](), set[str](), list[float](), list[int]()
     call, bind, record = Kernel.__call__, Bound.__init__, Observer.record
@@ -51,11 +54,12 @@ def main(scene: str, folder: Path) -> None:
 
     watched = patch.object(Kernel, "__call__", called), patch.object(Bound, "__init__", bound)
     watched_calls = patch.object(binding, "compile_wanted", compiled_at_a_call)
-    with watched[0], watched[1], watched_calls, patch.object(Observer, "record", recorded):
+    cut = nullcontext() if bars is None else coarse_cables(bars)
+    with watched[0], watched[1], watched_calls, patch.object(Observer, "record", recorded), cut:
         run(shortened(read_scene(scene)), folder / "results", force=True)
     data = {"last": last, "iterations": iterations, "kernels": sorted(kernels), "late": sorted(late)}
     (folder / "found.json").write_text(json.dumps(data), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], Path(sys.argv[2]))
+    main(sys.argv[1], Path(sys.argv[2]), int(sys.argv[3]) if sys.argv[3:] else None)

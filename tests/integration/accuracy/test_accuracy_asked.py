@@ -143,8 +143,12 @@ def test_elements_are_short_where_curvature_asks_for_it() -> None:
     assert max(lengths) > 10.0 * lengths[0]
 
 
-def test_motion_reaches_it_and_its_scene_is_kept(tmp_path: Path) -> None:
-    name = "beam under tension, sudden load"
+@pytest.mark.parametrize(
+    "name",
+    ["on springs, coarse", pytest.param("beam under tension, sudden load", marks=pytest.mark.verify)],
+    ids=["statics", "motion"],
+)
+def test_the_scene_of_the_run_that_reaches_it_is_kept(name: str, tmp_path: Path) -> None:
     run_to_accuracy(scene_from_mapping(asking(name)), tmp_path / "run")
     assert worst(tmp_path / "run", name) <= 0.01
     chosen = read_scene(tmp_path / "run" / "scene.yaml")

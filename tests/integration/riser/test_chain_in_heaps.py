@@ -30,6 +30,7 @@ SHARES = np.array([0.95, 0.86, 0.8, 0.7, 0.6, 0.52, 0.3, 1e-3])  # of their leng
 LENGTH = 1.5
 STATIC = Weights(0.0, 1.0, 0.0, 0.0)
 dimensions = pytest.mark.parametrize("dimension", [2, 3])
+formulas = pytest.mark.usefixtures("uncompiled")
 
 
 def heaped(dimension: int, shares: Array) -> Beam:
@@ -57,6 +58,7 @@ def shaken(beam: Beam, seed: int) -> State:
     return placed(u)
 
 
+@formulas
 @dimensions
 def test_forces_are_the_gradient_of_the_energy(dimension: int) -> None:
     beam = heaped(dimension, SHARES)
@@ -69,6 +71,7 @@ def test_forces_are_the_gradient_of_the_energy(dimension: int) -> None:
     assert error(residual([beam], state, STATIC), np.array(gradient)) < 1e-8
 
 
+@formulas
 @dimensions
 def test_tangent_is_the_derivative_of_the_forces(dimension: int) -> None:
     beam = heaped(dimension, SHARES)
@@ -78,6 +81,7 @@ def test_tangent_is_the_derivative_of_the_forces(dimension: int) -> None:
     assert np.abs(K - K.T).max() < 1e-12 * np.abs(K).max()
 
 
+@formulas
 @dimensions
 def test_damping_has_its_exact_tangent_too(dimension: int) -> None:
     """And takes out energy, with no chord as well: by r EA/L times the damping and the chord's rate."""
@@ -95,6 +99,7 @@ def test_damping_has_its_exact_tangent_too(dimension: int) -> None:
     assert np.isfinite(tangent([damping], moving, WEIGHTS)).all()
 
 
+@formulas
 @dimensions
 def test_a_chord_of_no_length_is_a_spring(dimension: int) -> None:
     """The element's pull is r EA/L times the chord, whichever way that points, and its load that of a level element."""
@@ -114,6 +119,7 @@ def test_a_chord_of_no_length_is_a_spring(dimension: int) -> None:
     assert np.isfinite(tangent([beam], at_rest, STATIC)).all()
 
 
+@formulas
 @dimensions
 def test_forces_across_a_chord_are_bounded(dimension: int) -> None:
     """Ends at right angles to a short chord don't turn it by more than the element weighs: without, they would by
@@ -126,6 +132,7 @@ def test_forces_across_a_chord_are_bounded(dimension: int) -> None:
     assert np.abs(forces).max() < 740.0 * LENGTH
 
 
+@formulas
 def test_the_share_of_the_bow_grows_smoothly() -> None:
     """The share grows from nothing at half of the length to all of it at nine tenths, where the element is like any
     other.
@@ -161,6 +168,7 @@ print(*(entry.data["dispatcher"].py_func.__name__ for _, entry in seen.buffer))
 """
 
 
+@pytest.mark.verify
 def test_nothing_of_heaps_is_compiled_for_a_line_that_bends(tmp_path: Path) -> None:
     """The line's forces and energy are compiled, from an empty cache."""
     given = environment() | {"NUMBA_CACHE_DIR": str(tmp_path)}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import string
 from collections.abc import Iterator
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +30,8 @@ def keys_in(data: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str |
         yield from keys_in(value, (*path, key))
 
 
-PATHS = list(keys_in(parse(TEXT, "scene").data))
+DATA = parse(TEXT, "scene").data
+PATHS = list(keys_in(DATA))
 
 
 @st.composite
@@ -65,7 +67,7 @@ def test_the_nearest_key_is_named(data: st.DataObject) -> None:
     word = str(path[-1])
     wrong = data.draw(misspelt(word).filter(lambda new: new not in (word, *spot(path[:-1]).keys)))
     with pytest.raises(SceneError) as caught:
-        scene_from_mapping(renamed(parse(TEXT, "scene").data, path, wrong))
+        scene_from_mapping(renamed(DATA, path, wrong))
     lines = str(caught.value).splitlines()
     assert any(wrong in line and word in line for line in lines), lines
     assert all("; " in line for line in lines)
@@ -81,7 +83,7 @@ SCALARS = st.one_of(
 @given(data=st.data(), value=SCALARS)
 def test_no_value_causes_anything_but_a_reported_problem(data: st.DataObject, value: Any) -> None:
     path = data.draw(st.sampled_from(PATHS))
-    scene = parse(TEXT, "scene").data
+    scene = deepcopy(DATA)
     holder = scene
     for item in path[:-1]:
         holder = holder[item]
