@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 from contextlib import suppress
 from pathlib import Path
@@ -73,6 +74,22 @@ def test_two_jobs_are_done_at_the_same_time(tmp_path: Path, monkeypatch: pytest.
     first, second = Awaited(here, there), Awaited(there, here)
     side_by_side([first, second])
     assert first.process == os.getpid() != second.process
+
+
+class Collecting(Awaited):
+    """One that says whether garbage is looked for where it is done."""
+
+    def do(self) -> None:
+        self._path.with_suffix(".collects").write_text(str(gc.isenabled()), encoding="utf-8")
+        super().do()
+
+
+def test_a_fork_looks_for_no_garbage(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(AT_MOST, "2")
+    here, there = tmp_path / "here", tmp_path / "there"
+    side_by_side([Collecting(here, there), Collecting(there, here)])
+    assert here.with_suffix(".collects").read_text(encoding="utf-8") == str(gc.isenabled()) == "True"
+    assert there.with_suffix(".collects").read_text(encoding="utf-8") == "False"
 
 
 def test_what_forks_fail_to_do_is_done_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
