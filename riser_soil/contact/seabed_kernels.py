@@ -198,7 +198,7 @@ def by_position(force: float, slope: float, normal: Vec, bend: Mat) -> Mat:
 
 @njit
 def _by_position_at(part: SeabedData, p: int) -> Mat:
-    """The same of a station in the line's axes; the normal of flat ground stays as it is."""
+    """`by_position` of a station, in the line's axes; on flat ground the normal does not turn."""
     normal, force, slope = normal_at(part.touching, p), part.touching.force[p], part.touching.slope[p]
     if part.flat:
         return matscale(slope, outer(normal, normal))

@@ -27,7 +27,7 @@ from riser_soil.report.html import Began
 from riser_soil.report.report_file import ReportFile
 from riser_soil.report.sources import LoadCase, Sources, opened
 from riser_soil.results.stage_records import stage_records
-from riser_soil.results.whole_file import written_whole
+from riser_soil.results.whole_file import require_folder_of, written_whole
 
 WRITERS = {  # by a file's ending: module, function, the package that it needs beside those of all reports
     ".html": ("riser_soil.report.html", "write_html", ""),
@@ -58,16 +58,17 @@ def write_report(given: ReportFile, file: Path, on_progress: OnProgress = silent
     is then as it was.
     """
     write = writer_of(file)
-    sources, begun, count = opened(given), 0, 0
+    require_folder_of(file)  # before anything is drawn
+    document = document_of(opened(given))
+    count = sum(isinstance(item, PictureBlock) for item in numbered(document))
+    begun = 0
 
     def began(item: PictureBlock) -> None:
         nonlocal begun
         on_progress(item.caption.partition(":")[0], begun, count)
         begun += 1
 
-    with written_whole(file) as part:  # which says it, before anything is drawn, where there is no such folder
-        document = document_of(sources)
-        count = sum(isinstance(item, PictureBlock) for item in numbered(document))
+    with written_whole(file) as part:
         write(document, part, began)
     return file
 

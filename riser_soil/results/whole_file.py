@@ -18,9 +18,8 @@ def written_whole(file: Path) -> Iterator[Path]:
     WriteError where it cannot be written.
     """
     part = file.with_name(f".{file.stem}.part{file.suffix}")
+    require_folder_of(file)
     try:
-        if not file.parent.is_dir():
-            raise WriteError(f"{file}: cannot be written: there is no folder {file.parent}; choose another file")
         yield part
         part.replace(file)
     except OSError as err:
@@ -28,6 +27,12 @@ def written_whole(file: Path) -> Iterator[Path]:
     finally:
         if file.parent.is_dir():
             part.unlink(missing_ok=True)
+
+
+def require_folder_of(file: Path) -> None:
+    """WriteError where a file has no folder to be written to."""
+    if not file.parent.is_dir():
+        raise WriteError(f"{file}: cannot be written: there is no folder {file.parent}; choose another file")
 
 
 @contextmanager

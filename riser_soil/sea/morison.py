@@ -206,6 +206,7 @@ def _add_whole_tangent(
     part: StillWaterData, at: Configuration, maps: Maps, weights: Weights, K: Array
 ) -> None:
     ne, D, d, workspace = part.drag.shape[0], at.D, len(at.D), part.workspace
+    # Ones: what is computed where a batch has no station is not read, but divides by a stretch.
     batch, by = _batch(np.ones((3 * d + 5, BATCH)), D), np.zeros((3, d, d, BATCH))
     for first in range(0, ne, ELEMENTS):
         after = min(first + ELEMENTS, ne)

@@ -225,11 +225,12 @@ class Soil:
         return out
 
     def inadmissible(self, state: State) -> str:
-        """Message about a cell that a step would fold, "" for none; collective."""
+        """Message about a cell that a step would fold, by its place as the step begins, "" for none; collective."""
         moved = self.points + self.field.own(state.u).reshape(-1, 3)
         skew = skewness(self.grid.family, moved, self.cells.nodes) if self.moves else np.ones(1)
         worst = int(skew.argmin()) if skew.size else 0
-        mine = (float(skew[worst]), moved[self.cells.nodes[worst]].mean(axis=0).tolist()) if skew.size else (1.0, [])
+        place = self.points[self.cells.nodes[worst]].mean(axis=0).tolist() if skew.size else []
+        mine = float(skew.min(initial=1.0)), place
         least, at = min(self.grid.nodes.comm.allgather(mine))
         if least > FOLDS:
             return ""

@@ -51,8 +51,8 @@ def sinking_into_tetrahedra(across: int, depth: float, steps: int, **more: Any) 
 class Sunk:
     """Step by step: embedment over D, loads down and to the side (+y) per length over su D, Newton iterations, the
     stage's t, lift: area of the section times the height to which it has risen from level ground, over D³, and R: load
-    down with which each step was solved, as V; new meshes that it took; and the area of the slice's section over that
-    at first.
+    down with which each step was solved, as V; solutions: of each step, on as many geometries; new meshes that it took;
+    and the area of the slice's section over that at first.
     """
 
     w: Array
@@ -62,6 +62,7 @@ class Sunk:
     t: Array
     lift: Array
     R: Array
+    solutions: Array
     renewals: int
     area: float
 
@@ -85,16 +86,17 @@ def sink(scene: Mapping, followed: int = 0) -> Sunk:
             forces.append(friction.force_on_soil(stepper.before))
         _, side, up = np.sum(forces, axis=0) / bearing
         borne = -step.solution.forces.end[contact.line.translation_dofs[:, -1]].sum() / bearing
-        solved = step.solution.iterations, step.t
-        rows.append((step.t * deepest, -up, side, *solved, lifted(soil.surface) / D**3, borne))
+        solved, solutions = (step.solution.iterations, step.t), 1 + (step.solution.iterations_before > 0)
+        rows.append((step.t * deepest, -up, side, *solved, lifted(soil.surface) / D**3, borne, solutions))
 
     state = State.at_rest(0.0, assembly.size)
     for stage in assembly.scene.stages[: followed + 1]:
         rows.clear()
         state = run_stage(assembly, stage, state, Watcher(watch), Timer.new())
-    w, V, H, iterations, t, lift, borne = np.array(rows).T
+    w, V, H, iterations, t, lift, borne, solutions = np.array(rows).T
     renewals = 0 if ground.mesh_renewal is None else ground.mesh_renewal.count
-    return Sunk(w, V, H, iterations, t, lift, borne, renewals, float(soil.cells.volumes.sum() / first))
+    area = float(soil.cells.volumes.sum() / first)
+    return Sunk(w, V, H, iterations, t, lift, borne, solutions, renewals, area)
 
 
 def lifted(surface: SoilSurface) -> float:

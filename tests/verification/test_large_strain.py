@@ -276,8 +276,7 @@ def require_breakout(sunk: Sunk, way: float) -> None:
     breakout = np.interp(0.1, way * sunk.t, sunk.H)
     beneath = np.interp(0.1, way * sunk.t, sunk.V)
     assert breakout == pytest.approx(1.7 * 0.3**0.61 + 0.23 * beneath**0.83, rel=0.33)
-    # 8.6 and 10.4: steps whose geometry is predicted badly, about a quarter, are solved anew, in some 3 iterations.
-    assert sunk.iterations.mean() < 11.0
+    assert sunk.iterations.sum() < 10.0 * sunk.solutions.sum()
     assert sunk.area == pytest.approx(1.0, abs=2e-3)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -163,7 +164,11 @@ def test_it_is_not_placed_where_a_cell_would_fold() -> None:
     soil, rng = moving("hex", LAWS[0].at_points), np.random.default_rng(5)
     u = 1e-4 * rng.normal(size=soil.points.shape)
     before, folds = nodal_forces(soil, u), 3.0 * rng.normal(size=u.size)
-    assert "would fold" in soil.inadmissible(State(1.0, folds, folds, folds))
+    reason = soil.inadmissible(State(1.0, 1e6 * folds, folds, folds))
+    assert "would fold" in reason
+    place = [float(number) for number in re.findall(r"[-\d.e+]+(?=[,)])", reason)]
+    assert (soil.points.min(axis=0) <= place).all()  # where the cell lies, not where it would end
+    assert (place <= soil.points.max(axis=0)).all()
     soil.place(State(1.0, folds, folds, folds))
     np.testing.assert_array_equal(nodal_forces(soil, u), before)
 
