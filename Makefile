@@ -16,7 +16,6 @@ export PRTE_MCA_rmaps_default_mapping_policy := :oversubscribe
 export PRTE_MCA_hwloc_default_binding_policy := none
 # OpenMPI 5 complains of network interfaces, which ranks of one machine don't use.
 export OMPI_MCA_btl := ^tcp
-export OMPI_MCA_mpi_yield_when_idle := 1
 export MPLBACKEND := Agg
 export PYVISTA_OFF_SCREEN := true
 export VTK_DEFAULT_OPENGL_WINDOW := vtkEGLRenderWindow

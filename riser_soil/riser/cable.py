@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -52,11 +53,11 @@ class BarChain:
     z1: float
     hover: float | None = None
 
-    @property
+    @cached_property
     def L(self) -> float:
         return float(self.l0.sum())
 
-    @property
+    @cached_property
     def load(self) -> float:
         """Sum of weights and lifts [N]."""
         return float(np.abs(self.W).sum())
@@ -82,16 +83,31 @@ class CableBalance:
     q: Array
     mu: float
 
+    @cached_property
+    def T(self) -> Array:
+        """Tension of the bars (nb,) N."""
+        return np.hypot(self.H, self.V)
+
+    @cached_property
+    def lengths_per_force(self) -> Array:
+        """What the bars span per newton of the force along the same axis (nb,) m/N."""
+        return self.chain.l0 * (1.0 / self.T + 1.0 / self.chain.EA)
+
     @property
     def x(self) -> Array:
         """Horizontal distance of the joints from the start (nb + 1,) m."""
-        chain = self.chain
-        dx = chain.l0 * self.H * (1.0 / np.hypot(self.H, self.V) + 1.0 / chain.EA)
-        return np.append(0.0, np.cumsum(dx))
+        return np.append(0.0, np.cumsum(self.H * self.lengths_per_force))
 
     @property
     def reach(self) -> float:
-        return float(self.x[-1])
+        return float(self.H * self.lengths_per_force.sum())
+
+    @cached_property
+    def misfits(self) -> tuple[Array, Array]:
+        """Spans beyond what the forces make of the bars (nb,) m; net upward force on the inner joints (nb - 1,) N."""
+        V = self.V
+        spans = np.diff(self.z) - V * self.lengths_per_force
+        return spans, np.diff(V) - self.chain.W[1:-1] + self.q
 
     @property
     def V_at_joints(self) -> Array:
@@ -230,19 +246,12 @@ def _ways_inside(trial: CableBalance, step: CableBalance) -> Iterator[float]:
         yield TO_THE_EDGE / max(1e-300, float(np.max(-change / value)))
 
 
-def _misfits(trial: CableBalance) -> tuple[Array, Array]:
-    """Spans beyond what the forces make of the bars (nb,) m; net upward force on the inner joints (nb - 1,) N."""
-    chain, z, V = trial.chain, trial.z, trial.V
-    spans = np.diff(z) - chain.l0 * V * (1.0 / np.hypot(trial.H, V) + 1.0 / chain.EA)
-    return spans, np.diff(V) - chain.W[1:-1] + trial.q
-
-
 def _misfit(trial: CableBalance, goal: SpanCondition | None) -> float:
     """Misfits of spans, reach and heights over the length, plus that of forces over the load.
 
     Where tensions exceed the load by far, their round-off counts less.
     """
-    chain, (spans, forces) = trial.chain, _misfits(trial)
+    chain, (spans, forces) = trial.chain, trial.misfits
     beyond = 0.0 if goal is None else abs(trial.reach - goal.h)
     resting = np.abs(trial.q * trial.z[1:-1] - trial.mu).sum() if trial.mu > 0.0 else 0.0
     scale = chain.load + ROUNDED * (trial.H + float(np.abs(trial.V).max()))
@@ -253,20 +262,21 @@ def _newton_step(trial: CableBalance, goal: SpanCondition | None) -> CableBalanc
     """Changes of H, heights, bar forces and pushes. Of a bar, k is dV/d(dz) at constant H, and c is d(dz)/dH = d(dx)/dV
     at constant V.
     """
-    chain, H, V, (spans, forces) = trial.chain, trial.H, trial.V, _misfits(trial)
-    T = np.hypot(H, V)
-    k = 1.0 / (chain.l0 * (H**2 / T**3 + 1.0 / chain.EA))
-    c = -chain.l0 * H * V / T**3
+    chain, H, V, (spans, forces) = trial.chain, trial.H, trial.V, trial.misfits
+    bend = chain.l0 / (trial.T * trial.T * trial.T)
+    stretch = chain.l0 / chain.EA
+    k = 1.0 / (H * H * bend + stretch)
+    c = -H * V * bend
     resting = trial.q / trial.z[1:-1] if trial.mu > 0.0 else 0.0
     wanted = trial.mu / trial.z[1:-1] - trial.q if trial.mu > 0.0 else np.zeros_like(trial.q)
     banded = np.zeros((2, k.size - 1))
     banded[0, 1:] = -k[1:-1]
     banded[1] = k[:-1] + k[1:] + resting
-    z = np.zeros((k.size + 1, 2))  # at constant H, and for a unit of H
-    z[1:-1] = solve_symmetric(banded, np.stack([forces + wanted + np.diff(k * spans), -np.diff(k * c)], axis=1))
-    dV = k[:, None] * (np.stack([spans, -c], axis=1) + np.diff(z, axis=0))
+    z = np.zeros((2, k.size + 1))  # at constant H, and for a unit of H
+    z[:, 1:-1] = solve_symmetric(banded, np.stack([forces + wanted + np.diff(k * spans), -np.diff(k * c)]).T).T
+    dV = k * (np.stack([spans, -c]) + np.diff(z))
     dH = 0.0
     if goal is not None:
-        dH = (goal.h - trial.reach - c @ dV[:, 0]) / (c @ dV[:, 1] + np.sum(chain.l0 * (V**2 / T**3 + 1.0 / chain.EA)))
-    dz = z[:, 0] + dH * z[:, 1]
-    return replace(trial, H=float(dH), z=dz, V=dV[:, 0] + dH * dV[:, 1], q=wanted - resting * dz[1:-1])
+        dH = (goal.h - trial.reach - c @ dV[0]) / (c @ dV[1] + np.sum(V * V * bend + stretch))
+    dz = z[0] + dH * z[1]
+    return replace(trial, H=float(dH), z=dz, V=dV[0] + dH * dV[1], q=wanted - resting * dz[1:-1])

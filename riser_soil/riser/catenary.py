@@ -94,14 +94,15 @@ def catenary(
     length = np.diff(arc)
     pieces = np.maximum(1, np.ceil(length * (bars / arc[-1]) - 1e-9)).astype(np.int64)
     w, stiffness = (np.repeat(np.broadcast_to(value, length.shape), pieces) for value in (weight, EA))
-    chain = _chain(np.repeat(length / pieces, pieces), w, stiffness, (start[2], end[2]), level)
-    _hang_on(chain, np.empty((0, 2)) if points is None else points)
+    l0 = np.repeat(length / pieces, pieces)
+    W = _at_joints(l0, w, np.empty((0, 2)) if points is None else points)
+    chain = _chain(l0, stiffness, W, (start[2], end[2]), level)
     if not chain.load > 0.0:
         raise SceneError("riser.initial: catenary: needs a submerged weight; give initial points, or straight")
     nodes, direction = np.append(0, np.cumsum(pieces)), across / h if h > 0.0 else X
     if heaps and (heaped := heap(chain, h, surface - start[2])) is not None:
         return replace(_in_space(*heaped, nodes, start, end, direction, 0.0), heaped=True)
-    least = max(least_H, KINK * float(np.abs(w * chain.l0).max()))
+    least = max(least_H, KINK * float(np.abs(w * l0).max()))
     balance = fit(chain, h, least, None if near is None else near.balance)
     slack = max(0.0, balance.reach - h) if least >= balance.H else 0.0
     if heaps and slack > 0.0:
@@ -110,9 +111,8 @@ def catenary(
     return _in_space(balance.x, balance, nodes, start, end + slack * direction, direction, slack)
 
 
-def _chain(l0: Array, w: Array, EA: Array, ends: tuple[float, float], level: float) -> BarChain:
+def _chain(l0: Array, EA: Array, W: Array, ends: tuple[float, float], level: float) -> BarChain:
     """The bars, heights counted from the seabed, or from the start where there is none."""
-    W = 0.5 * (np.append(w * l0, 0.0) + np.append(0.0, w * l0))
     L, low = float(l0.sum()), min(ends)
     if low < level - LEVEL * L:
         raise SceneError(
@@ -123,15 +123,18 @@ def _chain(l0: Array, w: Array, EA: Array, ends: tuple[float, float], level: flo
     return BarChain(l0, EA, W, ends[0] - level, ends[1] - level, hover=HOVER * L)
 
 
-def _hang_on(chain: BarChain, points: Array) -> None:
-    """Add point weights to the joints around them; weights at a prescribed end are carried by its support."""
-    along = np.append(0.0, np.cumsum(chain.l0))
-    bar = np.clip(np.searchsorted(along, points[:, 0], side="right") - 1, 0, chain.l0.size - 1)
-    share = (points[:, 0] - along[bar]) / chain.l0[bar]
-    added = np.zeros_like(chain.W)
-    np.add.at(added, bar, (1.0 - share) * points[:, 1])
-    np.add.at(added, bar + 1, share * points[:, 1])
-    chain.W[1:-1] += added[1:-1]
+def _at_joints(l0: Array, w: Array, points: Array) -> Array:
+    """Weights (nb + 1,) [N] of the joints: half of each bar beside it, and shares of the point weights there; those at
+    a prescribed end are carried by its support.
+    """
+    along = np.append(0.0, np.cumsum(l0))
+    bar = np.clip(np.searchsorted(along, points[:, 0], side="right") - 1, 0, l0.size - 1)
+    share = (points[:, 0] - along[bar]) / l0[bar]
+    hung = np.zeros_like(along)
+    np.add.at(hung, bar, (1.0 - share) * points[:, 1])
+    np.add.at(hung, bar + 1, share * points[:, 1])
+    hung[[0, -1]] = 0.0
+    return 0.5 * (np.append(w * l0, 0.0) + np.append(0.0, w * l0)) + hung
 
 
 def _in_space(

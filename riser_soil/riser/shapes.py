@@ -135,8 +135,8 @@ def frames_along(tangent: Array, second: Array) -> Array:
     first = second - tangent[0] * (tangent[0] @ second)
     frames = np.empty((len(tangent), 3, 3))
     frames[0] = _columns(tangent[0], first / np.linalg.norm(first))
-    for i in range(1, len(tangent)):
-        frames[i] = smallest_turn(tangent[i - 1], tangent[i]) @ frames[i - 1]
+    for i, turn in enumerate(smallest_turns(tangent[:-1], tangent[1:])):
+        frames[i + 1] = turn @ frames[i]
     return frames
 
 
@@ -144,23 +144,22 @@ def _columns(tangent: Array, second: Array) -> Array:
     return np.stack([tangent, second, np.cross(tangent, second)], axis=1)
 
 
-def smallest_turn(a: Array, b: Array) -> Array:
-    """Rotation matrix that takes unit vector a to b along the great circle; a half turn when they are opposite.
+def smallest_turns(a: Array, b: Array) -> Array:
+    """Rotation matrices (n, 3, 3) that take unit vectors a to b, each (n, 3), along the great circle; half turns where
+    they are opposite.
 
     Else half turns about a and about the direction between both, which stay exact where these are nearly opposite.
     """
-    cosine = float(a @ b)
-    if cosine < -1.0 + 1e-12:
-        normal = np.cross(a, UP if abs(a @ UP) < 0.9 else X)
-        normal /= np.linalg.norm(normal)
-        return _half_turn(normal)
-    middle = (a + b) / np.linalg.norm(a + b)
-    return np.asarray(_half_turn(middle) @ _half_turn(a))
+    middle, first = a + b, _half_turns(a)
+    opposite = np.einsum("ni,ni->n", a, b) < -1.0 + 1e-12
+    for i in np.flatnonzero(opposite):
+        middle[i], first[i] = np.cross(a[i], UP if abs(a[i] @ UP) < 0.9 else X), np.eye(3)
+    return _half_turns(middle / np.linalg.norm(middle, axis=1, keepdims=True)) @ first
 
 
-def _half_turn(axis: Array) -> Array:
-    """Rotation matrix; axis: unit."""
-    return np.asarray(2.0 * np.outer(axis, axis) - np.eye(3))
+def _half_turns(axes: Array) -> Array:
+    """Rotation matrices (n, 3, 3); axes (n, 3): unit."""
+    return np.asarray(2.0 * axes[:, :, None] * axes[:, None, :] - np.eye(3))
 
 
 def _second_axis(tangent: Array) -> Array:
@@ -178,7 +177,7 @@ def layout(arc: Array, outer_diameter: Array, unstressed: Curve, initial: Curve)
     kink, or none.
     """
     T0 = _end_frames(unstressed.tangent, _second_axis(unstressed.tangent[0, 0]))
-    turn = smallest_turn(unstressed.tangent[0, 0], initial.tangent[0, 0])
+    [turn] = smallest_turns(unstressed.tangent[:1, 0], initial.tangent[:1, 0])
     T = _end_frames(initial.tangent, turn @ T0[0, 0, :, 1])
     first = T[:, 0] @ np.swapaxes(T0[:, 0], 1, 2)
     last = T[-1, 1] @ T0[-1, 1].T

@@ -21,7 +21,6 @@ ENVIRONMENT = {
     "OMP_NUM_THREADS": "1",
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    "OMPI_MCA_mpi_yield_when_idle": "1",
     "OMPI_MCA_btl": "^tcp",  # OpenMPI 5 complains of network interfaces, which ranks of one machine don't use
     "PYTHONPATH": str(ROOT),
 } | SHARED_CORES
