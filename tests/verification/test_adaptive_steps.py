@@ -46,6 +46,7 @@ def test_a_smooth_motion_settles_on_a_plateau(surged: Run) -> None:
     assert surged["step_cuts"].sum() < 0.03 * len(surged["step_cuts"])
 
 
+@pytest.mark.verify
 def test_changes_of_size_do_not_shake_the_tension() -> None:
     """The riser's top tension varies by 3 kN. Steps that change size by a third at the ramp's end, and a little all the
     time, are as near as those of 0.4 s, the largest that they are.

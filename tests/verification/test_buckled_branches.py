@@ -107,7 +107,7 @@ def test_two_ranks_count_as_one() -> None:
     assert done.stdout.strip() == "[0, 2]", done.stderr
 
 
-@pytest.mark.parametrize("elements", [20, 40])
+@pytest.mark.parametrize("elements", [20, pytest.param(40, marks=pytest.mark.verify)])
 def test_just_beyond_lateral_torsional_buckling(elements: int, tmp_path: Path) -> None:
     """The deflection is the square root of the excess over the load at which the rod's equations have a second
     solution; far beyond it towards positive y, as the mode's largest displacement goes there. The mirrored branch is as

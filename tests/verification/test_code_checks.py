@@ -380,6 +380,7 @@ def test_each_line_type_by_its_own_code(tmp_path: Path, capsys: pytest.CaptureFi
     assert "code: capacity curve" in capsys.readouterr().out
 
 
+@pytest.mark.verify
 def test_two_ranks_find_the_same(dnv: Run, tmp_path: Path) -> None:
     two = ran(hanging(DNV | {"functional_stage": "hang"}), tmp_path / "two", ranks=2)
     for name in ("combined_loading_utilisation", "hoop_buckling_utilisation", "code_utilisation"):

@@ -130,6 +130,7 @@ def test_snes_finds_the_flight_of_a_rigid_body_that_the_line_solver_finds() -> N
     np.testing.assert_allclose(compiled.angular, snes.angular, rtol=0.0, atol=1e-8)
 
 
+@pytest.mark.verify
 def test_energy_errs_in_second_order() -> None:
     ranges = np.array([Flight(3, dt, 8.0).energy_range for dt in (0.05, 0.025, 0.0125)])
     assert np.all(np.log2(ranges[:-1] / ranges[1:]) > 1.9)
@@ -206,6 +207,7 @@ def spin_up(folder: Path, axis: Array, along: Array, dimension: int) -> tuple[Ar
     return time, np.stack([c * x + s * y, c * y - s * x, tip @ axis], axis=1)
 
 
+@pytest.mark.verify
 def test_spin_up(tmp_path: Path) -> None:
     """The tip lags while the hub accelerates; then the beam is straight and longer by rho A w^2 L^3 / (3 EA).
 

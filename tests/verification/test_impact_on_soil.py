@@ -38,7 +38,7 @@ def gains_nothing(k: float, dt: float, law: Mapping, where: tuple[float, float])
 
 @pytest.mark.parametrize(
     ("k", "dt", "law"),
-    [(1e7, 0.05, ELASTIC), (1e8, 0.02, CLAY), (1e7, 0.02, CLAY)],
+    [(1e7, 0.05, ELASTIC), pytest.param(1e8, 0.02, CLAY, marks=pytest.mark.verify), (1e7, 0.02, CLAY)],
     ids=["elastic", "stiff on clay", "clay"],
 )
 def test_impact_on_soil_gains_no_energy(k: float, dt: float, law: Mapping) -> None:

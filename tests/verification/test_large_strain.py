@@ -78,6 +78,7 @@ def test_the_line_is_in_balance_with_the_forces_that_are_shown(scene: Mapping) -
     assert sunk.R[-1] == pytest.approx(sunk.V[-1], rel=1e-6)
 
 
+@pytest.mark.verify
 def test_loads_lag_behind_no_step() -> None:
     """On the geometry of each step's start the load of the coarser steps would be that of a step before, 2 % less."""
     coarse, fine = (sink(sinking(8, 0.15, steps)) for steps in (25, 50))

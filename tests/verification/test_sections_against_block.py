@@ -45,7 +45,7 @@ def share_of_strip(y: Array) -> Array:
     return np.asarray(np.diff(middles, prepend=-0.5 * WIDTH, append=0.5 * WIDTH)[where] / WIDTH)
 
 
-@pytest.mark.parametrize("lengths", [1.0, 2.0, 4.0, 6.0])
+@pytest.mark.parametrize("lengths", [1.0, *(pytest.param(x, marks=pytest.mark.verify) for x in (2.0, 4.0)), 6.0])
 def test_sections_settle_more_than_a_block_by_what_is_foretold(lengths: float) -> None:
     """To a depth of so many lengths 1/k. Found: 0.96, 0.97, 1.09 and 1.24 times the block's."""
     length = DEPTH / lengths

@@ -144,6 +144,7 @@ def test_what_lies_in_the_heap_does_not_count_at_the_top(more: dict[str, Any], t
     assert run["end_force"][-1][2] == pytest.approx(W * HEIGHT, rel=1e-3)
 
 
+@pytest.mark.verify
 def test_a_heap_is_the_same_on_two_ranks(tmp_path: Path) -> None:
     alone = run_of(slack(1.3 * (SPAN + HEIGHT), 10), tmp_path / "1")
     with (tmp_path / "scene.yaml").open("w") as file:

@@ -93,6 +93,7 @@ def test_strip_on_fine_hexahedra_is_within_two_per_cent() -> None:
     assert 0.0 < press_strip("hex", 32, far=0.25).load[-1] / PRANDTL - 1.0 < 0.02
 
 
+@pytest.mark.verify
 def test_strip_on_full_integration_locks() -> None:
     """What the mean dilatation cures: without it the load is far off and still rising."""
     grid_family = small_block("hex").family

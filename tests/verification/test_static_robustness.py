@@ -115,8 +115,6 @@ QUICK = (
     Case(1.00001, "vertical", "none", SOFT),
     Case(0.999, "vertical", "rigid", STIFF),
     *(Case(length, "vertical", "none", FINE) for length in (1.00001, 1.01, 2.0)),  # it may turn about the vertical
-    Case(1.01, "level", "rigid", FINE),
-    Case(5.0, "steep", "rigid", SOFT),
 )
 
 

@@ -117,6 +117,7 @@ def test_a_cylinder_locks_in_at_nearly_a_diameter(reduced: float) -> None:
     assert motion.work("vortices") > 0.0
 
 
+@pytest.mark.verify
 def test_half_the_step_gives_the_same() -> None:
     coarse, fine = (oscillation(mounted(5.5, steps)[1]) for steps in (60, 120))
     assert coarse == pytest.approx(fine, rel=2e-3)
@@ -191,6 +192,7 @@ def test_a_riser_in_shear_is_shaken_at_the_fast_flow_s_frequency() -> None:
     assert amplitude / THIN == pytest.approx(BY_MOORDYN[1], rel=0.02)
 
 
+@pytest.mark.verify
 def test_twice_the_elements_shake_alike() -> None:
     coarse, fine = strongest(in_shear(elements=20)), strongest(in_shear())
     assert coarse == pytest.approx(fine, rel=0.02)

@@ -233,6 +233,7 @@ def test_no_unit_of_length_and_time_matters(theory: str) -> None:
     assert small.speed * 1e6 == pytest.approx(wave.speed, rel=1e-10, abs=1e-12)
 
 
+@pytest.mark.verify
 def test_the_highest_waves() -> None:
     """Williams's (1981): 0.1412 of the length in deep water, 0.833 of the depth of the longest."""
     assert highest(1.0, math.inf) == pytest.approx(0.1412, rel=2e-3)

@@ -248,6 +248,7 @@ def test_the_program_s_clay_by_way_of_a_file_is_the_same_clay(tmp_path: Path) ->
     assert law.surface_modulus(0.3) == pytest.approx(known.surface_modulus(0.3), rel=1e-12)
 
 
+@pytest.mark.verify
 def test_two_ranks_find_on_it_what_one_finds_on_the_program_s_own_clay(tmp_path: Path) -> None:
     scene = clay_scene(tmp_path)
     given = {key: value for key, value in scene["soil"]["law"].items() if key != "from"}
