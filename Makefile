@@ -1,7 +1,7 @@
 # Every goal starts from a bare Debian: `make demo` and `make test` set up what they need (scripts/setup.sh).
 
 PYTHON := .venv/bin/python
-WORKERS ?= $(shell nproc)
+WORKERS ?= $(shell env -u OMP_NUM_THREADS nproc)
 DECKS ?= build/decks
 SUITES ?= bookworm trixie
 DOCKER ?= docker
