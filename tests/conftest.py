@@ -3,7 +3,7 @@ that on to all that it starts; a handler, though, ends where another program beg
 as gmsh remembers how it found Ctrl-C. What runs keep for others of their compliance is not kept, nor read.
 
 Files that take long stand in long_files.txt, and are the first that workers take, so that none is left with one at the
-end. Those that start ranks stand apart: ranks that wait leave their cores to other workers.
+end. Those that start ranks stand apart, so that few ranks at a time share the cores.
 """
 
 from __future__ import annotations
