@@ -34,7 +34,7 @@ def cases(
     overrides: Overrides = None,
 ) -> None:
     """Run load cases on many cores or machines: a folder for each, tables and extremes of all; call again to go on."""
-    with expected_errors():
+    with expected_errors(extra="cases"):
         if rank() > 0:
             return
         positive("limit", limit)

@@ -13,21 +13,22 @@ from riser_soil.core.environment import rank, size
 from riser_soil.errors import Interruption, RiserSoilError, SceneError, WriteError, is_full
 from riser_soil.interruption import default_signal_handlers, unmasked
 
-# Packages beyond those of a riser alone that PyPI has, and the extra of the project that brings them.
+# Packages beyond those of a riser alone that PyPI has, and the extras of the project that bring them. A command tells
+# the extra of its own, which brings what else it needs, where that is among them; else the first.
 EXTRAS = {
-    "scipy": "tables",
-    "matplotlib": "plots",
-    "PIL": "plots",
-    "pyvista": "plots",
-    "fatpack": "fatigue",
-    "xarray": "cases",
-    "dask": "cases",
-    "distributed": "cases",
-    "jinja2": "report",
-    "markupsafe": "report",
-    "docx": "report",
-    "weasyprint": "report",
-    "raschii": "waves",
+    "scipy": ("tables", "cases"),
+    "matplotlib": ("plots", "cases", "report"),
+    "PIL": ("plots", "cases", "report"),
+    "pyvista": ("plots",),
+    "fatpack": ("fatigue",),
+    "xarray": ("cases", "fatigue"),
+    "dask": ("cases",),
+    "distributed": ("cases",),
+    "jinja2": ("report",),
+    "markupsafe": ("report",),
+    "docx": ("report",),
+    "weasyprint": ("report",),
+    "raschii": ("waves",),
 }
 # Packages that PyPI has none of that work together.
 ELSEWHERE = ("petsc4py", "mpi4py", "dolfinx", "basix", "ufl", "ffcx", "cffi", "gmsh")
@@ -37,8 +38,8 @@ _PATIENCE = 5.0
 
 
 @contextmanager
-def expected_errors() -> Iterator[None]:
-    """Tell expected errors by their message alone and leave with their status."""
+def expected_errors(extra: str = "") -> Iterator[None]:
+    """Tell expected errors by their message alone and leave with their status. extra: the command's own, see EXTRAS."""
     try:
         with unmasked():
             yield
@@ -54,7 +55,7 @@ def expected_errors() -> Iterator[None]:
             _leave_other_ranks(err.exit_status)
         raise typer.Exit(err.exit_status) from err
     except ModuleNotFoundError as err:
-        if not (way := _way_to(err.name or "")):
+        if not (way := _way_to(err.name or "", extra)):
             raise
         _print_once(f"{err.name}: is needed here and not installed; {way}")
         _end_other_ranks(SceneError.exit_status)
@@ -72,12 +73,15 @@ def expected_errors() -> Iterator[None]:
         raise
 
 
-def _way_to(module: str) -> str:
-    """The way to install a package that may be absent; "" for those that are always there."""
+def _way_to(module: str, extra: str) -> str:
+    """The way to install a package that may be absent; "" for those that are always there. extra: the command's own."""
     package = module.partition(".")[0]
     if package in ELSEWHERE:
         return "Debian, conda-forge or the project's Docker image bring it (docs/running.md)"
-    return f"pip install 'riser_soil[{EXTRAS[package]}]' brings it" if package in EXTRAS else ""
+    if package not in EXTRAS:
+        return ""
+    bringing = extra if extra in EXTRAS[package] else EXTRAS[package][0]
+    return f"pip install 'riser_soil[{bringing}]' brings it"
 
 
 def _print_once(message: str) -> None:

@@ -145,7 +145,7 @@ def report(
     ] = None,
 ) -> None:
     """Write a design report of runs, load cases, fatigue, statistics and modes, as HTML, PDF or Word document."""
-    with expected_errors():
+    with expected_errors(extra="report"):
         if rank() > 0:
             return
         from riser_soil.plots.progress import DrawingProgress
@@ -182,7 +182,7 @@ def fatigue(
     force: Annotated[bool, typer.Option("--force", help="overwrite an assessment, which is refused otherwise")] = False,
 ) -> None:
     """Damage in a year and life of a pipe's wall, by rainflow cycles of runs, an S-N curve and Miner's sum."""
-    with expected_errors():
+    with expected_errors(extra="fatigue"):
         if rank() > 0:
             return
         from riser_soil.fatigue.assessment import assess

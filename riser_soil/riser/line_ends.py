@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from riser_soil.core.arrays import Array, BoolArray, IntArray
+from riser_soil.core.arrays import Array, BoolArray, as_list
 from riser_soil.core.compiled import njit
 from riser_soil.core.saved_state import Saved
 from riser_soil.riser.directors import Frames, Orientation
@@ -92,18 +92,22 @@ class LineEnds:
             prescribed[node, d:] = end.rotation_fixed
         prescribed[0, d] |= spin and d == 3
         prescribed[:, self._fixed] = True
-        self.prescribed: BoolArray = prescribed.ravel()
-        self._dofs: IntArray = np.flatnonzero(self.prescribed)
+        self._prescribe(prescribed.ravel())
+
+    def _prescribe(self, prescribed: BoolArray) -> None:
+        self.prescribed = prescribed
+        edges = np.flatnonzero(np.diff(prescribed, prepend=False, append=False))
+        self._runs = [slice(*run) for run in as_list(edges.reshape(-1, 2))]  # of dofs that are prescribed
 
     @contextmanager
     def all_prescribed(self) -> Iterator[None]:
         """While the context lasts all dofs are prescribed not to move."""
-        free = self.prescribed, self._dofs
-        self.prescribed, self._dofs = np.ones(free[0].size, dtype=bool), np.arange(free[0].size)
+        free = self.prescribed
+        self._prescribe(np.ones(free.size, dtype=bool))
         try:
             yield
         finally:
-            self.prescribed, self._dofs = free
+            self._prescribe(free)
 
     def begin_stage(self) -> None:
         """Supports turn from where they are now."""
@@ -130,8 +134,8 @@ class LineEnds:
 
     def prescribe(self, t: float, x: Array, u: Array, v: Array, a: Array) -> None:
         """Write increments, rates and accelerations of prescribed dofs into the field's slices; nodes at x (nn, d)."""
-        for values in (u, v, a):
-            values[self._dofs] = 0.0
+        for run in self._runs:
+            u[run] = v[run] = a[run] = 0.0
         for node, motion, count in self._moving():
             at = slice(node * self._ndof, node * self._ndof + count)
             u[at], v[at], a[at] = self._motion(node, motion, t, x)[:, :count]

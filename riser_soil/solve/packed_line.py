@@ -47,9 +47,10 @@ class PackedLine:
         folded = bound(write_folded, self.at, self._trials.base.packed, Packed(self._folded))
         self.look_for_tangles = [folded] if line.nodes > 1 else []
         self.write_sizes = bound(write_magnitudes, self.at, Packed(self.dofs.sizes))
-        self.committed = [part for part in parts.parts if not has_history(part.kernel_data())]
+        without = (part for part in parts.parts if not has_history(part.kernel_data()))
+        self.committed = [part for part in without if _by_method(part, "commit")]
         turning = ((part, has_work(part.kernel_data())) for part in parts.parts)
-        self._turning = [(part, kernel) for part, kernel in turning if kernel or _by_method(part)]
+        self._turning = [(part, kernel) for part, kernel in turning if kernel or _by_method(part, "work")]
 
     def evaluate(self) -> list[Bound]:
         """Kernels that place the trial and find the forces there."""
@@ -154,9 +155,9 @@ class PackedLine:
         return folded, swung
 
 
-def _by_method(part: CompiledPart) -> bool:
-    """Whether a part computes its work by a method of its own, not by a kernel."""
-    return overrides(part, "work") and type(part).work is not CompiledPart.work
+def _by_method(part: CompiledPart, method: str) -> bool:
+    """Whether a part has a method of its own, in the place of one that calls kernels."""
+    return overrides(part, method) and getattr(type(part), method) is not getattr(CompiledPart, method)
 
 
 def _flat(*arrays: Array) -> list[Array]:

@@ -90,11 +90,16 @@ def test_a_pipe_that_nothing_bears_is_told_to_sink_on(monkeypatch: pytest.Monkey
 @pytest.mark.verify
 def test_a_pipe_that_its_supports_push_far_does_not_settle(monkeypatch: pytest.MonkeyPatch) -> None:
     """By D/30 a step, farther than a riser may sink of itself."""
+
+    def refuse(self: settling._Settling, drag: float) -> Array | None:
+        raise AssertionError("it settles")
+
     monkeypatch.setattr(stages, "PRESSED_BY", 1 / 30)
+    monkeypatch.setattr(settling._Settling, "_step", refuse)
     sunk = sink(sinking(CELLS, 0.1, 3))
     print(sunk.w, sunk.V)
     assert sunk.w[-1] == pytest.approx(0.1)
-    assert sunk.w.size < 12, "load steps, some of them cut"
+    assert sunk.w.size < 20, "load steps, cut where a facet's area would be off the geometry of its forces, too"
     assert sunk.V[-1] == pytest.approx(sink(sinking(CELLS, 0.1, 40)).V[-1], rel=0.1)
 
 

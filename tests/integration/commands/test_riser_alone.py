@@ -115,6 +115,13 @@ def test_options_of_the_environment_that_nothing_reads_are_warned_of(
     assert len(unread) == (0 if overrides else 1)
 
 
+@pytest.mark.parametrize(("command", "extra"), [("plot", "plots"), ("report", "report")])
+def test_a_command_says_which_extra_brings_all_that_it_needs(command: str, extra: str) -> None:
+    done = riser_soil_without(["matplotlib", "jinja2"], command, "results")
+    assert done.returncode == SceneError.exit_status
+    line_with(done.stderr.splitlines(), "matplotlib:", "not installed", f"pip install 'riser_soil[{extra}]'")
+
+
 def test_a_motion_table_says_that_it_needs_scipy(tmp_path: Path) -> None:
     table = tmp_path / "surge.csv"
     rows = "".join(f"{t},{0.1 * t},0,0,0,0,0\n" for t in range(200))
