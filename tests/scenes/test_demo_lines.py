@@ -71,7 +71,8 @@ def test_nothing_leaves_the_plane_of_lines_that_keep_to_one(path: str, value: st
 
 @pytest.mark.verify
 def test_half_of_the_clay_bears_lines_in_a_plane_as_all_of_it_does(tmp_path: Path) -> None:
-    """And as in space, as far as Newton's method goes.
+    """And as in space, as far as Newton's method goes: where clay bears all that it can, its tolerance is 5e-6 of a
+    settlement.
 
     There friction keeps the pipe from sliding to a side, which round-off would choose.
     """
@@ -82,12 +83,12 @@ def test_half_of_the_clay_bears_lines_in_a_plane_as_all_of_it_does(tmp_path: Pat
         run(read_scene(DEMO / "lazy_s_on_clay.yaml", (*overrides, "stages.1.duration=1.0")), tmp_path / way)
         ran[way] = Run(tmp_path / way)
     half = ran["half"]
-    for one, other in ((half, ran["all"]), (ran["held"], ran["space"])):
+    for one, other, off in ((half, ran["all"], 2e-6), (ran["held"], ran["space"], 1e-5)):
         for stage in (0, 1):
             known, computed = (each.of_line("lower").summary["stages"][stage] for each in (one, other))
             assert computed["final"]["contact_force"] == pytest.approx(known["final"]["contact_force"], rel=1e-7)
             assert computed["soil"]["max_settlement"]["value"] == pytest.approx(
-                known["soil"]["max_settlement"]["value"], rel=2e-6
+                known["soil"]["max_settlement"]["value"], rel=off
             )
     assert 2 * half.summary["dofs"]["soil"] == ran["all"].summary["dofs"]["soil"]
 
