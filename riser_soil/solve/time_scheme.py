@@ -217,7 +217,9 @@ class GeneralizedAlpha:
         )
 
     def trial(self, before: State, t: float, dt: float, u: Array) -> State:
-        return State(t, u, *_rates(u, before.v, before.a, dt, self.beta, self.gamma), dt=dt)
+        v, a = np.empty_like(u), np.empty_like(u)
+        _write_rates(u, before.v, before.a, dt, self.beta, self.gamma, v, a)
+        return State(t, u, v, a, dt=dt)
 
     def balanced_at(self, before: State, end: State, dt: float) -> State:
         return end
@@ -225,7 +227,9 @@ class GeneralizedAlpha:
     def past(self, start: Forces | None) -> Array | None:
         if start is None:
             return None
-        return np.asarray(_past(self.bulk_weight, self.alpha_m, start.inertia, self.alpha_f, start.force))
+        past = np.empty_like(start.force)
+        _write_past(self.bulk_weight, self.alpha_m, start.inertia, self.alpha_f, start.force, past)
+        return past
 
     def split_contact(self, state: State, contact: Array, dt: float) -> State:
         a = state.a - contact / (2.0 * self.beta)
@@ -240,22 +244,20 @@ class GeneralizedAlpha:
 
 
 @njit
-def _past(bulk: float, alpha_m: float, inertia: Array, alpha_f: float, force: Array) -> Array:
-    """Share of the forces at a step's start in its residual."""
-    out = np.empty(force.size)
+def _write_past(bulk: float, alpha_m: float, inertia: Array, alpha_f: float, force: Array, out: Array) -> None:
+    """Write the share of the forces at a step's start in its residual."""
     for i in range(force.size):
         out[i] = bulk * (alpha_m * inertia[i] + alpha_f * force[i])
-    return out
 
 
 @njit
-def _rates(u: Array, v: Array, a: Array, dt: float, beta: float, gamma: float) -> tuple[Array, Array]:
-    """Newmark's velocities and accelerations after the increments u, from those before them."""
-    then, change = np.empty(u.size), np.empty(u.size)
+def _write_rates(
+    u: Array, v: Array, a: Array, dt: float, beta: float, gamma: float, then: Array, change: Array
+) -> None:
+    """Write Newmark's velocities and accelerations after the increments u, from those before them."""
     for i in range(u.size):
         change[i] = (u[i] - dt * v[i]) / (beta * dt**2) - (0.5 / beta - 1.0) * a[i]
         then[i] = v[i] + dt * ((1.0 - gamma) * a[i] + gamma * change[i])
-    return then, change
 
 
 @dataclass(frozen=True)
