@@ -13,7 +13,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from types import FrameType
+from types import FrameType, TracebackType
 from typing import Any, NoReturn
 
 from riser_soil.errors import Interruption, RiserSoilError
@@ -66,7 +66,7 @@ def handling_signals() -> Iterator[None]:
         _pending.number, _pending.latest = 0, None
     former = {number: signal.signal(number, _pending.receive) for number in mine}
     try:
-        with unmasked(), _unraisable_kept():
+        with unmasked(), _unraisable_kept(), _unprinted():
             yield
     finally:
         for number, handler in former.items():
@@ -101,6 +101,24 @@ def _unraisable_kept() -> Iterator[None]:
         yield
     finally:
         sys.unraisablehook = usual
+
+
+@contextmanager
+def _unprinted() -> Iterator[None]:
+    """Prints no traceback of signals that come while a compiled module is imported: what numpy's `import_array` meets
+    it prints, and raises an ImportError, see `unmasked`.
+    """
+    usual = sys.excepthook
+
+    def leave_out(kind: type[BaseException], raised: BaseException, trace: TracebackType | None) -> None:
+        if not isinstance(raised, Interruption):
+            usual(kind, raised, trace)
+
+    sys.excepthook = leave_out
+    try:
+        yield
+    finally:
+        sys.excepthook = usual
 
 
 @contextmanager
