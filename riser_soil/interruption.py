@@ -66,7 +66,7 @@ def handling_signals() -> Iterator[None]:
         _pending.number, _pending.latest = 0, None
     former = {number: signal.signal(number, _pending.receive) for number in mine}
     try:
-        with unmasked(), _unraisable_kept(), _unprinted():
+        with unmasked(), _unraisable_kept():
             yield
     finally:
         for number, handler in former.items():
@@ -105,8 +105,8 @@ def _unraisable_kept() -> Iterator[None]:
 
 @contextmanager
 def _unprinted() -> Iterator[None]:
-    """Prints no traceback of signals that come while a compiled module is imported: what numpy's `import_array` meets
-    it prints, and raises an ImportError, see `unmasked`.
+    """Prints no traceback of signals that come while a compiled module is imported: numpy's `import_array` prints what
+    it meets, and raises an ImportError.
     """
     usual = sys.excepthook
 
@@ -123,14 +123,15 @@ def _unprinted() -> Iterator[None]:
 
 @contextmanager
 def unmasked() -> Iterator[None]:
-    """Raises the Interruption of a signal where another exception has taken its place.
+    """Raises the Interruption of a signal where another exception has taken its place, and keeps it from being printed.
 
     One that came within compiled code makes a SystemError of its caller, one within the import of a compiled module an
     ImportError, one within pydantic's making of a model a SchemaError; where an import was cut off and its caller tried
     another way, anything may have followed.
     """
     try:
-        yield
+        with _unprinted():
+            yield
     except (RiserSoilError, OSError):
         raise
     except Exception as err:
