@@ -71,8 +71,8 @@ def test_nothing_leaves_the_plane_of_lines_that_keep_to_one(path: str, value: st
 
 @pytest.mark.verify
 def test_half_of_the_clay_bears_lines_in_a_plane_as_all_of_it_does(tmp_path: Path) -> None:
-    """And as in space, as far as the geometry goes that forces are computed on: off by 1 % of a facet's area at most, in
-    either as its motion was predicted. By a fiftieth of that settlements at rest differ by 3e-7 in place of 4.5e-6.
+    """And as in space, as far as the geometry goes that forces are computed on: off by 1 % of a facet's area at most,
+    in either as its motion was predicted. By a fiftieth of that settlements at rest differ by 3e-7, not by 4.5e-6.
 
     There friction keeps the pipe from sliding to a side, which round-off would choose.
     """
