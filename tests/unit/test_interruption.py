@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from types import SimpleNamespace
@@ -50,6 +51,14 @@ WITHIN = "raise SystemError('returned a result with an exception set') from Inte
 
 def nothing_done(number: signal.Signals) -> tuple[str, ...]:
     return f"ended by {number.name}", "before the first stage", "nothing was computed"
+
+
+@pytest.fixture(autouse=True)
+def forgotten() -> Iterator[None]:
+    """What a test raises is not taken for what another one meets."""
+    yield
+    with handling_signals():
+        pass
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
